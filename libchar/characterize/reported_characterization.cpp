@@ -156,12 +156,12 @@ void refuse_lot_report(const std::string& path, const std::string& instead) {
   std::string file = report_file(path);
   if (!std::filesystem::exists(file, ignored))
     file = (std::filesystem::path(path) / "lot.json").string();
-  if (format_in(file) == "fleet-lot")
+  if (format_in(file) == "lot")
     throw Error({ErrorKind::input,
                  "E0771",
                  file,
                  "this is the report of a lot of devices",
-                 "fleet-lot",
+                 "lot",
                  instead});
 }
 

@@ -64,4 +64,7 @@ struct PooledRuns {
 /// fit; Error(usage) for fewer than two.
 PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& options = {});
 
+/// The same file twice is one recording. Throws Error(input).
+void refuse_same_recording(std::span<const Characterization> recordings);
+
 }  // namespace libchar

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "libchar/core/document.hpp"
 #include "libchar/core/document_file.hpp"
@@ -75,6 +76,15 @@ std::string stem_of_log(const std::string& file) {
   const std::string folder =
       fs::absolute(path).lexically_normal().parent_path().filename().string();
   return folder.empty() ? path.stem().string() : folder;
+}
+
+std::vector<std::string> names_of_logs(const std::vector<std::string>& files) {
+  std::vector<std::string> names;
+  std::map<std::string, std::size_t> count;
+  for (const std::string& file : files) ++count[names.emplace_back(stem_of_log(file))];
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (count[names[i]] > 1) names[i] = files[i];
+  return names;
 }
 
 }  // namespace libchar

@@ -20,4 +20,7 @@ std::vector<std::string> files_of_log(const std::string& file);
 /// What to call a log in the names of files: its name without suffix, of a recording of rosbag2 that of its folder.
 std::string stem_of_log(const std::string& file);
 
+/// What to call logs side by side: by their stems, by their whole paths where two have one.
+std::vector<std::string> names_of_logs(const std::vector<std::string>& files);
+
 }  // namespace libchar

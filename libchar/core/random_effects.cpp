@@ -14,10 +14,10 @@
 #include <cmath>
 
 #include "libchar/core/chi_square.hpp"
-#include "libchar/core/detail/weighted.hpp"
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/median.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/weighted.hpp"
 
 namespace libchar {
 namespace {
@@ -192,7 +192,7 @@ std::vector<Outlier> find_outliers(std::span<const double> value,
   std::vector<double> y(value.begin(), value.end()), v(variance.begin(), variance.end());
   std::vector<std::size_t> index(y.size());
   for (std::size_t i = 0; i < index.size(); ++i) index[i] = i;
-  while (y.size() >= 4 && 3 * (out.size() + 1) <= value.size()) {
+  while (y.size() >= kFewestForOutliers && 3 * (out.size() + 1) <= value.size()) {
     const Outlier worst = worst_of(y, v);
     out.push_back({index[worst.index], worst.deviation, worst.p});
     if (worst.p < probability / 2) last = out.size();

@@ -76,10 +76,6 @@ void read_device(const MapReader& at, const fs::path& folder, FleetDevice& devic
   if (at.has("sha256")) device.sha256 = digest_at(at);
 }
 
-std::string name_of_log(const std::string& log) {
-  return fs::path(log).stem().string();
-}
-
 Manifest parse_tree(std::string_view text,
                     const std::string& path,
                     const CharacterizeOptions& options) {
@@ -104,7 +100,7 @@ Manifest parse_tree(std::string_view text,
     FleetDevice device = defaults;
     at.require("log");
     read_device(at, folder, device);
-    if (device.device.empty()) device.device = name_of_log(device.log);
+    if (device.device.empty()) device.device = stem_of_log(device.log);
     device.options = at.has("options") ? table.index(options_at(at, common)) : common_index;
     device.where = at.where(one);
     manifest.devices.push_back(std::move(device));
@@ -172,7 +168,7 @@ Manifest parse_table(std::string_view text,
     FleetDevice device;
     at.require("log");
     read_device(at, folder, device);
-    if (device.device.empty()) device.device = name_of_log(device.log);
+    if (device.device.empty()) device.device = stem_of_log(device.log);
     device.where = fmt::format("{}:{}:1", path, row.line);
     manifest.devices.push_back(std::move(device));
   }
@@ -316,13 +312,12 @@ Manifest manifest_of_logs(const std::vector<std::string>& words,
   refuse_manifest_among(logs);
   Manifest manifest;
   manifest.options.push_back(options);
-  std::map<std::string, int> names;
-  for (const std::string& log : logs) ++names[name_of_log(log)];
-  for (const std::string& log : logs) {
+  const std::vector<std::string> names = names_of_logs(logs);
+  for (std::size_t i = 0; i < logs.size(); ++i) {
     FleetDevice device;
-    device.log = absolute_path(log, fs::current_path());
-    device.device = names[name_of_log(log)] > 1 ? log : name_of_log(log);
-    device.where = log;
+    device.log = absolute_path(logs[i], fs::current_path());
+    device.device = names[i];
+    device.where = logs[i];
     manifest.devices.push_back(std::move(device));
   }
   check_devices(manifest, "");

@@ -218,13 +218,7 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
     record.analysis = analyses.of(unit);
   }
   if (!options.partial) refuse_missing(plan, missing, folder);
-  for (DeviceRecord& record : out) {
-    use_thermometer(record);
-    if (std::string why = why_nothing_fitted(record); !why.empty()) {
-      record.problem = std::move(why);
-      record.channels.clear();
-    }
-  }
+  for (DeviceRecord& record : out) finish_record(record);
   return out;
 }
 

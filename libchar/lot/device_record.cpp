@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "libchar/characterize/limits.hpp"
+#include "libchar/characterize/runs.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/log_files.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/fit/shaped_curves.hpp"
@@ -107,6 +109,20 @@ bool is_in_celsius(const std::string& text) {
   return unit && unit->symbol == "°C";
 }
 
+/// The one channel in °C beside others.
+void use_thermometer(DeviceRecord& record) {
+  RecordedChannel* thermometer = nullptr;
+  for (RecordedChannel& channel : record.channels) {
+    if (!is_in_celsius(channel.unit)) continue;
+    if (thermometer != nullptr) return;  // which of them is that of the sensor?
+    thermometer = &channel;
+  }
+  if (thermometer == nullptr || record.channels.size() < 2) return;
+  drop_own_effects(*thermometer);
+  if (!record.temperature_c && std::isfinite(thermometer->mean))
+    record.temperature_c = thermometer->mean;
+}
+
 }  // namespace
 
 bool RecordedValue::operator==(const RecordedValue& o) const {
@@ -146,17 +162,26 @@ DeviceRecord record_of(const Characterization& result, SampleKind data) {
   return out;
 }
 
-void use_thermometer(DeviceRecord& record) {
-  RecordedChannel* thermometer = nullptr;
-  for (RecordedChannel& channel : record.channels) {
-    if (!is_in_celsius(channel.unit)) continue;
-    if (thermometer != nullptr) return;  // which of them is that of the sensor?
-    thermometer = &channel;
+std::vector<DeviceRecord> records_of(std::span<const Characterization> results, SampleKind data) {
+  refuse_same_recording(results);
+  std::vector<std::string> files;
+  for (const Characterization& one : results) files.push_back(one.log.file);
+  const std::vector<std::string> names = names_of_logs(files);
+  std::vector<DeviceRecord> out;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    DeviceRecord& record = out.emplace_back(record_of(results[i], data));
+    record.device = names[i];
+    finish_record(record);
   }
-  if (thermometer == nullptr || record.channels.size() < 2) return;
-  drop_own_effects(*thermometer);
-  if (!record.temperature_c && std::isfinite(thermometer->mean))
-    record.temperature_c = thermometer->mean;
+  return out;
+}
+
+void finish_record(DeviceRecord& record) {
+  use_thermometer(record);
+  if (std::string why = why_nothing_fitted(record); !why.empty()) {
+    record.problem = std::move(why);
+    record.channels.clear();
+  }
 }
 
 std::string why_nothing_fitted(const DeviceRecord& record) {
@@ -170,16 +195,18 @@ std::string why_nothing_fitted(const DeviceRecord& record) {
   return one_line(problem);
 }
 
-Coefficient coefficient_of(const RecordedValue& v) {
+Coefficient coefficient_of(const RecordedValue& v, double factor) {
   Coefficient out;
   out.status = v.status;
   if (!std::isnan(v.value)) {
-    out.value = v.value;
-    out.ci95 = v.ci95;
+    out.value = factor * v.value;
+    out.ci95 = {factor * v.ci95.low, factor * v.ci95.high};
     out.relative_sd = v.sd;
   }
-  out.in_all = v.in_all;
-  if (!std::isnan(v.upper95)) out.upper95 = v.upper95;
+  if (v.in_all)
+    out.in_all = {
+        factor * factor * v.in_all->square, factor * factor * v.in_all->sd, v.in_all->skewness};
+  if (!std::isnan(v.upper95)) out.upper95 = factor * v.upper95;
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,15 +67,19 @@ struct DeviceRecord {
 /// What a lot looks at. Device, type, batch, settings and report are the caller's to fill; the mean of a phase is no bias.
 DeviceRecord record_of(const Characterization& result, SampleKind data = SampleKind::rate);
 
-/// The one channel in °C beside others is a thermometer: its mean is the temperature of a recording that says none, and it has no turn-on
-/// bias and no temperature coefficient itself.
-void use_thermometer(DeviceRecord& record);
+/// Of logs side by side: each is a device that is called as its file is (names_of_logs). Throws Error(input) for one recording twice.
+std::vector<DeviceRecord> records_of(std::span<const Characterization> results,
+                                     SampleKind data = SampleKind::rate);
+
+/// Once all channels of a recording are in its record. The one channel in °C beside others is a thermometer: its mean is the temperature of
+/// a recording that says none, and it has no turn-on bias and no temperature coefficient itself. Where nothing was fitted, `problem` says why.
+void finish_record(DeviceRecord& record);
 
 /// Where its log was read and nothing in it could be fitted: why, in a sentence; else "".
 std::string why_nothing_fitted(const DeviceRecord& record);
 
-/// The coefficient again, as far as the record holds it.
-Coefficient coefficient_of(const RecordedValue& value);
+/// The coefficient again, as far as the record holds it, in the unit that `factor` converts to.
+Coefficient coefficient_of(const RecordedValue& value, double factor = 1);
 
 /// One line of JSON without its newline: {"format":"device-record",…}. Every number reads back to the same double.
 std::string device_record_text(const DeviceRecord& record);

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/characterize/lot_figures.hpp"
+#include "libchar/core/random_effects.hpp"
 #include "libchar/lot/capability.hpp"
 #include "libchar/lot/control_chart.hpp"
 #include "libchar/lot/device_batches.hpp"
@@ -43,6 +43,23 @@ struct LotCounts {
   std::size_t no_result = 0;     ///< no fit, or the quantity is not in it
 };
 
+/// In the unit of the values: exp of the logarithms for coefficients.
+struct LotFigures {
+  double mean = 0;
+  Interval mean_ci95;
+  double spread =
+      0;  ///< of coefficients relative (standard deviation of the logarithm), of others in their unit
+  Interval spread_ci95;
+};
+
+/// Of the values, where LotFigures is of their logarithms.
+struct ArithmeticFigures {
+  double mean = 0;
+  Interval mean_ci95;
+  double sd = 0;  ///< of the devices
+  Interval sd_ci95;
+};
+
 /// 0, 2.5, 25, 50, 75, 97.5 and 100 % of the values lie below.
 inline constexpr std::array<double, 7> kLotQuantiles = {0, 0.025, 0.25, 0.5, 0.75, 0.975, 1};
 
@@ -50,6 +67,8 @@ struct BatchLot {
   std::string batch;
   LotCounts counts;
   std::optional<LotFigures> figures;
+  std::size_t in_figures =
+      0;  ///< more than `counted` where those not detected or doubtful are in them
   double median = kNone;
 };
 
@@ -112,7 +131,8 @@ struct FleetOutlier {
   std::string sentence;
 };
 
-/// One quantity of one channel of all devices of a type, or of all channels of a kind.
+/// One quantity of one channel of all devices of a type, or of all channels of a kind. What was recorded in several units of one quantity
+/// is converted to that of most recordings.
 struct QuantityLot {
   std::string type, group;  ///< "gyro_x", or "angular_rate in deg/s"
   bool of_kind = false;
@@ -134,6 +154,8 @@ struct QuantityLot {
   std::optional<ControlChart> chart;  ///< by batch and device; its indices are those of `charted`
   std::vector<std::size_t> charted;   ///< recording of each value of the chart
   std::optional<Capability> capability;
+  // Of a channel among devices; of a kind where one device has all of its channels:
+  bool searched = false;               ///< there are enough to say who stands out
   std::vector<FleetOutlier> outliers;  ///< worst first
 };
 

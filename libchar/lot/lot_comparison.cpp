@@ -8,33 +8,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
-#include <tuple>
 
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/lot/detail/equal_spread.hpp"
-#include "libchar/lot/detail/lot_groups.hpp"
-#include "libchar/lot/detail/quantity_values.hpp"
+#include "libchar/lot/detail/fleet_data.hpp"
+#include "libchar/lot/detail/lot_figures.hpp"
 
 namespace libchar {
 namespace {
 
 using Records = std::span<const DeviceRecord>;
-using GroupKey = std::tuple<std::string, std::string, std::string>;  // type, channel, unit
 
-struct Side {
-  Records records;
-  SortedRecords sorted;
-  std::vector<LotGroup> groups;
-  std::map<GroupKey, std::size_t> index;  ///< of the groups that are channels
-  std::vector<std::size_t> one_batch;     ///< batches are not looked at here
-};
-
-Side side_of(Records records, const std::string& name) {
+Fleet side_of(Records records, const std::string& name) {
   if (records.empty())
     throw Error({ErrorKind::usage,
                  "E0752",
@@ -42,17 +31,29 @@ Side side_of(Records records, const std::string& name) {
                  "a lot needs at least one device record, there is none in " + name,
                  "",
                  "characterize its logs first"});
-  Side out{records, sorted_records(records), {}, {}, {}};
-  out.groups = lot_groups(records, out.sorted);
-  out.one_batch.resize(out.sorted.first.size());
-  for (std::size_t g = 0; g < out.groups.size(); ++g)
-    if (!out.groups[g].of_kind)
-      out.index[{out.groups[g].type, out.groups[g].name, out.groups[g].channel_unit}] = g;
-  return out;
+  return fleet_of(records, {});
 }
 
-QuantityValues values_of(const Side& side, std::size_t g, DeviceQuantity quantity) {
-  return quantity_values(side.records, side.groups[g], quantity, side.one_batch, 1);
+/// The same channel of another lot; null: it has none.
+LotGroup* same_channel(Fleet& side, const LotGroup& channel) {
+  for (LotGroup& group : side.groups)
+    if (!group.of_kind && group.type == channel.type && group.name == channel.name &&
+        group.measures == channel.measures)
+      return &group;
+  return nullptr;
+}
+
+/// A quantity of a channel in one of the lots.
+struct SideValues {
+  QuantityValues values;
+  std::optional<QuantityEffects> effects;  ///< none: too few for a mean
+};
+
+SideValues values_of(const Fleet& side, const LotGroup& group, DeviceQuantity quantity) {
+  SideValues out{quantity_values(side.records, group, quantity, side.batch_of, side.batches.size()),
+                 {}};
+  out.effects = effects_of(out.values, in_logarithm(quantity));
+  return out;
 }
 
 double standard_error(const RandomEffects& effects) {
@@ -82,31 +83,25 @@ void compare_means(const RandomEffects& a,
   if (logarithm) out.change_ci95 = {std::exp(difference - half), std::exp(difference + half)};
 }
 
-/// Nothing where one of the lots has no mean of it.
-std::optional<LotDifference> difference_of(
-    const Side& a, std::size_t ga, const Side& b, std::size_t gb, DeviceQuantity quantity) {
-  const QuantityValues va = values_of(a, ga, quantity), vb = values_of(b, gb, quantity);
+/// Both lots have a mean of it.
+LotDifference difference_of(const LotGroup& group,
+                            const SideValues& a,
+                            const SideValues& b,
+                            DeviceQuantity quantity) {
   const bool logarithm = in_logarithm(quantity);
-  const auto ea = effects_of(va, logarithm), eb = effects_of(vb, logarithm);
-  if (!ea || !eb) return std::nullopt;
-  const LotGroup& group = a.groups[ga];
   LotDifference out;
   out.type = group.type;
   out.group = group.name;
   out.quantity = quantity;
   out.channel_unit = group.channel_unit;
   out.unit = unit_of(quantity, group.channel_unit);
-  out.counts_a = va.counts;
-  out.counts_b = vb.counts;
-  out.a = lot_figures(ea->effects, logarithm);
-  out.b = lot_figures(eb->effects, logarithm);
-  compare_means(ea->effects, eb->effects, logarithm, out);
-  out.p_spread = equal_spread_p(va.y, va.v, vb.y, vb.v);
+  out.counts_a = a.values.counts;
+  out.counts_b = b.values.counts;
+  out.a = lot_figures(a.effects->effects, logarithm);
+  out.b = lot_figures(b.effects->effects, logarithm);
+  compare_means(a.effects->effects, b.effects->effects, logarithm, out);
+  out.p_spread = equal_spread_p(a.values.y, a.values.v, b.values.y, b.values.v);
   return out;
-}
-
-std::string channel_title(const std::string& channel, const std::string& type) {
-  return type.empty() ? channel : channel + " of " + type;
 }
 
 /// "2 of 20 devices of march": of all that have the channel, whatever the quantity is found of.
@@ -117,34 +112,30 @@ std::string known_text(const QuantityValues& values,
 }
 
 /// Counted in one and hardly in the other: no means to compare, which is a difference in itself.
-void note_detection(const Side& a,
-                    std::size_t ga,
-                    const Side& b,
-                    std::size_t gb,
+void note_detection(const LotGroup& group,
+                    const SideValues& a,
+                    const LotGroup& group_b,
+                    const SideValues& b,
                     DeviceQuantity quantity,
                     FleetComparison& out) {
-  const QuantityValues va = values_of(a, ga, quantity), vb = values_of(b, gb, quantity);
-  if (va.counts.counted + vb.counts.counted == 0) return;
-  const bool logarithm = in_logarithm(quantity);
-  const bool in_a = effects_of(va, logarithm).has_value(),
-             in_b = effects_of(vb, logarithm).has_value();
-  const bool only_a = !in_a && in_b, only_b = in_a && !in_b;
+  if (a.values.counts.counted + b.values.counts.counted == 0) return;
+  const bool only_a = !a.effects && b.effects, only_b = a.effects && !b.effects;
   out.not_compared.push_back(fmt::format("{} of {}: known of {} and of {}: too few{} for means.",
                                          title_of(quantity),
-                                         channel_title(a.groups[ga].name, a.groups[ga].type),
-                                         known_text(va, a.groups[ga], out.name_a),
-                                         known_text(vb, b.groups[gb], out.name_b),
+                                         channel_title(group.name, group.type),
+                                         known_text(a.values, group, out.name_a),
+                                         known_text(b.values, group_b, out.name_b),
                                          only_a   ? " of " + out.name_a
                                          : only_b ? " of " + out.name_b
                                                   : ""));
 }
 
-void note_only(const Side& here, const Side& there, const std::string& name, FleetComparison& out) {
-  for (const auto& [key, g] : here.index)
-    if (there.index.count(key) == 0)
+void note_only(const Fleet& here, Fleet& there, const std::string& name, FleetComparison& out) {
+  for (const LotGroup& group : here.groups)
+    if (!group.of_kind && same_channel(there, group) == nullptr)
       out.not_compared.push_back(fmt::format("{} in {}: only in {}.",
-                                             channel_title(std::get<1>(key), std::get<0>(key)),
-                                             unit_title(std::get<2>(key)),
+                                             channel_title(group.name, group.type),
+                                             unit_title(group.channel_unit),
                                              name));
 }
 
@@ -252,7 +243,7 @@ std::string comparison_verdict(const FleetComparison& c) {
 }  // namespace
 
 FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& options) {
-  const Side sa = side_of(a, options.name_a), sb = side_of(b, options.name_b);
+  Fleet sa = side_of(a, options.name_a), sb = side_of(b, options.name_b);
   FleetComparison out;
   out.name_a = options.name_a;
   out.name_b = options.name_b;
@@ -260,27 +251,38 @@ FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& opt
   out.devices_a = sa.sorted.first.size();
   out.devices_b = sb.sorted.first.size();
   bool common = false;
-  for (std::size_t ga = 0; ga < sa.groups.size(); ++ga) {
-    const LotGroup& group = sa.groups[ga];
-    const auto other = sb.index.find({group.type, group.name, group.channel_unit});
-    if (group.of_kind || other == sb.index.end()) continue;
+  for (const LotGroup& group : sa.groups) {
+    LotGroup* const in_b = group.of_kind ? nullptr : same_channel(sb, group);
+    if (in_b == nullptr) continue;
     common = true;
+    if (in_b->channel_unit != group.channel_unit) {
+      out.notes.push_back(fmt::format("{} is in {} in {} and in {} in {}: compared in {}.",
+                                      channel_title(group.name, group.type),
+                                      group.channel_unit,
+                                      options.name_a,
+                                      in_b->channel_unit,
+                                      options.name_b,
+                                      group.channel_unit));
+      convert_group(group.channel_unit, *in_b);
+    }
     for (const auto& row : enum_table<DeviceQuantity>) {
-      if (auto d = difference_of(sa, ga, sb, other->second, row.value))
-        out.differences.push_back(std::move(*d));
+      const SideValues va = values_of(sa, group, row.value), vb = values_of(sb, *in_b, row.value);
+      if (va.effects && vb.effects)
+        out.differences.push_back(difference_of(group, va, vb, row.value));
       else
-        note_detection(sa, ga, sb, other->second, row.value, out);
+        note_detection(group, va, *in_b, vb, row.value, out);
     }
   }
   if (!common)
-    throw Error({ErrorKind::input,
-                 "E0753",
-                 "",
-                 fmt::format("{} and {} have no channel of one type, name and unit in common",
-                             options.name_a,
-                             options.name_b),
-                 "",
-                 "compare lots of one type of device"});
+    throw Error(
+        {ErrorKind::input,
+         "E0753",
+         "",
+         fmt::format("{} and {} have no channel of one type, name and kind of unit in common",
+                     options.name_a,
+                     options.name_b),
+         "",
+         "compare lots of one type of device"});
   note_only(sa, sb, options.name_a, out);
   note_only(sb, sa, options.name_b, out);
   correct_for_all(out);

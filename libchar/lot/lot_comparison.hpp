@@ -40,7 +40,7 @@ struct FleetComparison {
   double false_alarm = 0.05;
   std::vector<LotDifference> differences;  ///< as the groups stand, whatever came out
   std::vector<std::string> not_compared;   ///< what only one has, or too few of
-  std::vector<std::string> notes;          ///< the caller's: how the lots were made
+  std::vector<std::string> notes;          ///< of units; the caller's on how the lots were made
   std::string verdict;
 };
 

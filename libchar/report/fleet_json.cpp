@@ -1,10 +1,11 @@
-// The document of a fleet's lot: lot.json.
+// The document of a lot: lot.json.
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/many_pieces.hpp"
 #include "libchar/report/fleet_report.hpp"
 
 namespace libchar {
@@ -54,6 +55,7 @@ Json batches_json(const QuantityLot& q) {
     Json one = {{"batch", json_text(b.batch)}};
     one.update(counts_json(b.counts));
     add_figures(one, b.figures);
+    one["of_all"] = b.in_figures > b.counts.counted;
     one["median"] = json_number(b.median);
     out.push_back(std::move(one));
   }
@@ -134,8 +136,11 @@ Json outliers_json(const FleetReport& report, const QuantityLot& q) {
   Json out = Json::array();
   for (std::size_t i = 0; i < std::min(kOutliersInJson, q.outliers.size()); ++i) {
     const FleetOutlier& o = q.outliers[i];
-    out.push_back({{"device", json_text(report.records[o.recording].device)},
+    const DeviceRecord& r = report.records[o.recording];
+    out.push_back({{"device", json_text(r.device)},
+                   {"channel", json_text(r.channels[o.channel].name)},
                    {"value", json_number(o.value)},
+                   {"ratio", in_logarithm(q.quantity) ? json_number(o.ratio) : Json(nullptr)},
                    {"deviation", json_number(o.deviation)},
                    {"p", json_number(o.p)},
                    {"sentence", json_text(o.sentence)}});
@@ -169,6 +174,7 @@ Json quantity_json(const FleetReport& report, const QuantityLot& q) {
                          : Json(nullptr);
   out["spread_is"] = in_logarithm(q.quantity) ? "relative" : "absolute";
   out["of_all"] = q.of_all;
+  out["p"] = q.effects ? json_number(q.effects->p) : Json(nullptr);
   const auto& plain = q.arithmetic;
   out["arithmetic"] = plain ? Json{{"mean", json_number(plain->mean)},
                                    {"mean_ci95", interval_json(plain->mean_ci95)},
@@ -203,9 +209,7 @@ Json quantity_json(const FleetReport& report, const QuantityLot& q) {
 
 Json fleet_json(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
-  std::vector<const LogInfo*> inputs;
-  for (const LogInfo& one : report.inputs) inputs.push_back(&one);
-  Json out = document_head("fleet-lot", report.command, inputs);
+  Json out = many_head("lot", report.recordings, report.command);
   out["name"] = json_text(report.name);
   out["verdict"] = json_text(lot.verdict);
   out["notes"] = texts_json(lot.notes);

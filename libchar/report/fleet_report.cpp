@@ -17,6 +17,7 @@
 #include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/many_pieces.hpp"
 
 namespace libchar {
 namespace {
@@ -24,13 +25,6 @@ namespace {
 /// Figures of more quantities than that are left to lot.json: the page has to open in a second.
 constexpr std::size_t kMostFigures = 150;
 constexpr std::size_t kFailedOnPage = 100;
-
-std::string device_link(const DeviceRecord& r) {
-  const std::string name = html_text(r.device);
-  return r.report.empty()
-             ? name
-             : fmt::format("<a href=\"{}/report.html\">{}</a>", html_address(r.report), name);
-}
 
 std::string facts(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
@@ -82,7 +76,7 @@ std::string worst_table(const FleetReport& report, std::size_t first, std::size_
     const WorstDevice& w = report.lot->worst[i];
     const DeviceRecord& r = report.records[w.recording];
     out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                       device_link(r),
+                       report_link(r.device, r.report),
                        html_text(r.type),
                        html_text(batch_of(*report.lot, w.recording)),
                        reason_list(w.reasons));
@@ -190,21 +184,6 @@ std::string devices_part(const FleetLot& lot) {
          "coefficients.npz beside this page.</p>\n</section>\n";
 }
 
-std::string provenance(const FleetReport& report) {
-  std::string out = "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n";
-  if (!report.inputs.empty()) {
-    out += "<div class=\"wide\"><table>\n" + table_head({"File", "SHA-256"});
-    for (const LogInfo& one : report.inputs)
-      out += fmt::format("<tr><td class=\"text\">{}</td><td class=\"hash\">{}</td></tr>\n",
-                         html_text(one.file),
-                         html_text(one.sha256));
-    out += "</tbody></table></div>\n";
-  }
-  if (!report.command.empty())
-    out += "<p>Command: <code>" + html_text(command_line(report.command)) + "</code></p>\n";
-  return out + "</section>\n";
-}
-
 /// Folders of reports: what stands before each device's name where that is all, so that a hundred thousand names stand there once.
 Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::size_t>& order) {
   std::optional<std::string> before;
@@ -225,24 +204,67 @@ Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::
   return out;
 }
 
-/// What tells the recordings of one device apart: the log's name and its temperature; "" where a device has one.
-Json recordings_json(const FleetReport& report) {
+/// What tells the recordings of one device apart: the log's name and its temperature; "" where a device has one. In the order of the lot.
+std::vector<std::string> recording_names(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
-  if (!has_several_recordings(lot)) return nullptr;
   std::map<std::pair<std::string_view, std::string_view>, std::size_t> count;
   const auto device = [&](std::size_t r) -> std::size_t& {
     return count[{report.records[r].type, report.records[r].device}];
   };
   for (const std::size_t r : lot.order) ++device(r);
-  Json out = Json::array();
+  std::vector<std::string> out;
   for (const std::size_t r : lot.order) {
     const DeviceRecord& one = report.records[r];
-    std::string text;
+    std::string& text = out.emplace_back();
     if (device(r) > 1) text = std::filesystem::path(one.log).filename().string();
     if (device(r) > 1 && one.temperature_c) text += ", " + celsius_text(*one.temperature_c);
-    out.push_back(json_text(text));
   }
   return out;
+}
+
+Json recordings_json(const FleetReport& report) {
+  return has_several_recordings(*report.lot) ? texts_json(recording_names(report)) : Json(nullptr);
+}
+
+/// Of a lot that is small enough for a table of all its channels.
+std::vector<ChannelRow> all_channels(const FleetReport& report) {
+  constexpr std::size_t kMost = 200;
+  const std::vector<std::size_t>& order = report.lot->order;
+  std::size_t channels = 0;
+  for (const std::size_t r : order) channels += report.records[r].channels.size();
+  if (channels > kMost) return {};
+  const std::vector<std::string> names = recording_names(report);
+  std::vector<ChannelRow> out;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const DeviceRecord& record = report.records[order[i]];
+    const std::string which = names[i].empty() ? "" : " (" + names[i] + ")";
+    for (ChannelRow& row : channel_rows(record, record.device + which))
+      out.push_back(std::move(row));
+  }
+  return out;
+}
+
+std::string channels_part(const FleetReport& report) {
+  const std::vector<ChannelRow> rows = all_channels(report);
+  return rows.empty() ? ""
+                      : "<section class=\"channel\">\n<h2>Channel by channel</h2>\n" +
+                            channels_table("Device", rows) + "</section>\n";
+}
+
+std::string channels_text(const FleetReport& report, std::size_t width) {
+  std::vector<std::vector<std::string>> table = {{"device", "channel", "N", "B", "K", "fit"}};
+  for (const ChannelRow& row : all_channels(report)) {
+    table.push_back({printable(row.recording), printable(row.channel)});
+    for (const std::string& cell : row.cells) table.back().push_back(printable(cell));
+  }
+  return table.size() > 1 ? "\n" + text_table(table, "  ", false, width) : "";
+}
+
+std::string curves_part(const FleetReport& report) {
+  const std::string figures = allan_figures(report);
+  return figures.empty()
+             ? ""
+             : "<section class=\"channel\">\n<h2>Allan curves</h2>\n" + figures + "</section>\n";
 }
 
 /// What the list of devices shows: columns, types and batches by number.
@@ -306,9 +328,11 @@ std::string fleet_html(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) +
                            quantities_part(lot) + "</section>\n" + worst_part(report) +
-                           figures_part(report) + devices_part(*report.lot) + provenance(report);
+                           channels_part(report) + curves_part(report) + figures_part(report) +
+                           devices_part(*report.lot) +
+                           many_provenance(report.recordings, report.command);
   PageParts parts;
-  parts.title = "A fleet of sensors";
+  parts.title = "A lot of sensors";
   parts.subject = report.name.empty() ? plural(lot.devices, "device") : report.name;
   parts.script = std::string(fleet_page_js());
   parts.style =
@@ -321,7 +345,7 @@ std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t
   const FleetLot& lot = *report.lot;
   std::string out = printable(lot.verdict) + "\n";
   for (const std::string& note : lot.notes) out += "  " + printable(note) + "\n";
-  out += failed_text(report);
+  out += failed_text(report) + channels_text(report, width);
   std::vector<std::vector<std::string>> rows = {{}};
   for (const std::string& head : quantity_heads(lot, false)) rows[0].push_back(ascii_lower(head));
   for (const QuantityLot& q : lot.quantities) {
@@ -342,12 +366,17 @@ std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t
   return out;
 }
 
+std::vector<std::string> fleet_report_files(const std::filesystem::path& folder) {
+  std::vector<std::string> out;
+  for (const char* name : {"index.html", "coefficients.csv", "coefficients.npz", "lot.json"})
+    out.push_back((folder / name).string());
+  return out;
+}
+
 std::vector<std::string> write_fleet_report(const FleetReport& report,
                                             const std::filesystem::path& folder,
                                             bool force) {
-  const auto path = [&](const char* name) { return (folder / name).string(); };
-  const std::vector<std::string> paths = {
-      path("index.html"), path("coefficients.csv"), path("coefficients.npz"), path("lot.json")};
+  const std::vector<std::string> paths = fleet_report_files(folder);
   check_outputs(paths, folder, {}, force);
   std::vector<OutputFile> texts = {{paths[0], fleet_html(report)}, {paths[3], ""}};
   WholeFile csv(paths[1], force), npz(paths[2], force);

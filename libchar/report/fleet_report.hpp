@@ -1,5 +1,5 @@
 #pragma once
-// A fleet's lot: what is written, shown and printed of it.
+// A lot of devices: what is written, shown and printed of it.
 //
 //   const FleetLot lot = fleet_lot(records, options);
 //   write_fleet_report({.records = records, .lot = &lot, .name = "March"}, folder, force);
@@ -11,7 +11,6 @@
 
 #include "libchar/core/json.hpp"
 #include "libchar/core/output_files.hpp"
-#include "libchar/log/recording.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
@@ -21,11 +20,14 @@ struct FleetReport {
   const FleetLot* lot = nullptr;
   std::string name;                  ///< of the fleet, in words
   std::vector<std::string> command;  ///< as typed
-  std::vector<LogInfo>
-      inputs;  ///< small files that it was made from (document_info): limits, a plan
+  /// That the records were made of, one each, where they are still in memory: their Allan curves are drawn, their logs and settings named.
+  std::span<const Characterization> recordings;
 };
 
-/// index.html, coefficients.csv, coefficients.npz and lot.json, all of them or none; their paths. A hundred thousand devices of six channels
+/// index.html, coefficients.csv, coefficients.npz and lot.json.
+std::vector<std::string> fleet_report_files(const std::filesystem::path& folder);
+
+/// Writes them, all or none; their paths. A hundred thousand devices of six channels
 /// are half a gigabyte, nearly all of it the tables, which go to the disk piece by piece. Throws Error(output) as write_outputs does.
 std::vector<std::string> write_fleet_report(const FleetReport& report,
                                             const std::filesystem::path& folder,

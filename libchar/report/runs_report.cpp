@@ -13,7 +13,9 @@
 #include "libchar/core/text.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/model/model_file.hpp"
+#include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/html_page.hpp"
 #include "libchar/report/detail/html_tables.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/limits_pieces.hpp"
@@ -25,10 +27,30 @@
 namespace libchar {
 namespace {
 
-std::vector<Recorded> recorded_runs(const RunsReport& report) {
-  std::vector<Recorded> out;
-  for (std::size_t r = 0; r < report.runs.size(); ++r)
-    out.push_back({report.pooled->runs[r].file, report.folders[r]});
+/// The channels of each run by itself.
+std::vector<ChannelRow> single_rows(const RunsReport& report) {
+  std::vector<ChannelRow> out;
+  for (std::size_t r = 0; r < report.runs.size(); ++r) {
+    DeviceRecord record = record_of(report.runs[r]);
+    record.report = report.folders[r];
+    for (ChannelRow& row : channel_rows(record, report.pooled->runs[r].file))
+      out.push_back(std::move(row));
+  }
+  return out;
+}
+
+Json run_links_json(const RunsReport& report) {
+  Json out = Json::array();
+  for (std::size_t r = 0; r < report.runs.size(); ++r) {
+    const LogInfo& log = report.runs[r].log;
+    const std::string& folder = report.folders[r];
+    out.push_back(
+        {{"name", json_text(report.pooled->runs[r].file)},
+         {"file", json_text(log.file)},
+         {"samples", log.samples},
+         {"rate_hz", json_number(log.time.rate_hz)},
+         {"report", folder.empty() ? Json(nullptr) : Json(json_text(folder + "/report.json"))}});
+  }
   return out;
 }
 
@@ -81,16 +103,11 @@ std::string curves_of(const RunsReport& report, const PooledChannel& c) {
   std::vector<SvgCurve> curves;
   for (const ChannelRun& run : c.runs) {
     const AllanCurve& allan = channel_in(report, c, run.run).allan;
-    SvgCurve curve;
+    SvgCurve curve = allan_svg(allan);
     curve.name = run.differs ? report.pooled->runs[run.run].file + " (differs)"
                              : report.pooled->runs[run.run].file;
     curve.colour = run.run;
     curve.strong = run.differs;
-    for (const AllanPoint& point : allan.points) {
-      if (!point.reliable) continue;
-      curve.x.push_back(point.tau_s);
-      curve.y.push_back(point.deviation);
-    }
     curves.push_back(std::move(curve));
   }
   SvgCurve model;
@@ -134,7 +151,7 @@ std::string channel_part(const RunsReport& report, const PooledChannel& c) {
                     bullet_list(c.sentences, "plain");
   std::vector<std::string> heads = coefficient_heads();
   out += "<div class=\"wide\"><table class=\"many\">\n" + table_head(heads) + "<tr>";
-  for (const std::string& cell : coefficient_cells(c.channel, &c.fit))
+  for (const std::string& cell : coefficient_cells(c.channel, c.fit))
     out += "<td class=\"n\">" + html_text(cell) + "</td>";
   out += "</tr></tbody></table></div>\n" + bullet_list(c.fit.sentences, "cautions");
   return out + curves_of(report, c) + runs_rows(report, c) + "</section>\n";
@@ -161,9 +178,8 @@ SensorModel model_of(const RunsReport& report, const PooledChannel& c) {
 
 Json runs_json(const RunsReport& report) {
   Json out = many_head("pooled-runs", report.runs, report.command);
-  if (!report.runs.empty()) out["config"] = json_of(report.runs[0].settings);
   out["verdict"] = json_text(report.pooled->verdict);
-  out["runs"] = recordings_json(report.runs, recorded_runs(report));
+  out["runs"] = run_links_json(report);
   Json fits = Json::array(), channels = Json::array(), problems = Json::array();
   for (const PooledChannel& c : report.pooled->channels) {
     fits.push_back(
@@ -185,10 +201,14 @@ std::string runs_html(const RunsReport& report) {
   if (report.limits != nullptr) body += limits_section(*report.limits);
   for (const PooledChannel& c : report.pooled->channels) body += channel_part(report, c);
   body += "<section class=\"channel\">\n<h2>Each run by itself</h2>\n" +
-          recordings_table(report.runs, recorded_runs(report)) + "</section>\n" +
+          channels_table("Run", single_rows(report)) + "</section>\n" +
           many_provenance(report.runs, report.command);
-  return many_page(
-      "Runs of a sensor", fmt::format("{} runs", report.runs.size()), body, runs_json(report));
+  return html_page({"Runs of a sensor",
+                    fmt::format("{} runs", report.runs.size()),
+                    "reportPage.start({}, () => 320);\n",
+                    std::string(page_css()) + std::string(many_page_css())},
+                   body,
+                   json_in_script(runs_json(report)));
 }
 
 std::string runs_text(const RunsReport& report) {

@@ -48,7 +48,7 @@ std::vector<Writing> all_verbs(const test::TemporaryFolder& folder) {
           {{"fit", broken, "--models", out}, "x.sensor.yaml"},
           {{"characterize", broken, "-o", out}, "report.json"},
           {{"characterize", broken, broken, "--pool", "-o", out}, "runs.json"},
-          {{"characterize", broken, "--lot", "-o", out}, "lot.html"},
+          {{"characterize", broken, "--lot", "-o", out}, "index.html"},
           {{"convert", broken, "-o", out + ".csv"}, ""},
           {{"convert", broken, "-o", out + ".f64"}, ""},
           {{"model", model, "-o", out}, ""},

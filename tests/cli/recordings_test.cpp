@@ -2,11 +2,14 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "libchar/core/json.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/run.hpp"
+#include "tests/support/schemas.hpp"
 
 using Catch::Contains;
 
@@ -53,6 +56,13 @@ std::string limits_text(const std::string& value) {
   return "format: noise-limits\nversion: 1\nsensor: <b>sheet</b>\nlimits:\n  - kind: angular_rate\n"
          "    white_noise: {value: " +
          value + ", unit: deg/√h}\n";
+}
+
+/// What a lot says, whoever puts it together; links lead from where its page is.
+libchar::Json said_of_lot(libchar::Json lot) {
+  for (const char* key : {"command", "config", "input", "name", "files_sha256"}) lot.erase(key);
+  for (auto& one : lot.at("worst")) one.erase("report");
+  return lot;
 }
 
 }  // namespace
@@ -143,25 +153,65 @@ TEST_CASE(
   CHECK(logs.characterize({"a.csv", "c.csv"}, {"--pool", "--lot"}).code == 2);
 }
 
-TEST_CASE("characterize --lot: one page of several devices") {
+TEST_CASE("characterize --lot and a fleet of the same logs say the same") {
   const Logs logs;
   std::vector<std::string> names;
-  for (int i = 0; i < 5; ++i) {
+  const std::map<int, double> louder = {{3, 1.9}, {6, 2.3}};
+  for (int i = 0; i < 9; ++i) {
     names.push_back("imu" + std::to_string(i) + ".csv");
-    write_log(logs.folder / names.back(), "deg/s", i == 3 ? 9e-3 : 5e-3, 40 + i);
+    const double by = louder.count(i) > 0 ? louder.at(i) : 1;
+    // Some of them say it in another unit.
+    write_log(logs.folder / names.back(),
+              i % 4 == 1 ? "rad/s" : "deg/s",
+              (i % 4 == 1 ? std::numbers::pi / 180 : 1) * 5e-3 * by,
+              40 + i);
   }
   const auto ran = logs.characterize(names, {"--lot"});
   CAPTURE(ran.err, ran.out);
   REQUIRE(ran.code == 0);
-  CHECK_THAT(ran.out, Contains("stand out") && Contains("gx of imu3"));
+  CHECK_THAT(ran.out,
+             Contains("9 devices. 2 devices stand out from their kind.") &&
+                 Contains("gx, gy: recorded in deg/s, rad/s, compared in deg/s."));
+  std::vector<std::string> plan = {"fleet", "plan", "-o", logs.path("f"), "--no-second-opinion"};
+  for (const std::string& name : names) plan.push_back(logs.path(name));
+  REQUIRE(test::run(plan).code == 0);
+  REQUIRE(test::run({"fleet", "run", logs.path("f")}).code == 0);
+  const auto merged = test::run({"fleet", "merge", logs.path("f"), "-o", logs.path("r")});
+  REQUIRE(merged.code == 0);
+  CHECK(ran.out.substr(0, ran.out.find("\nwrote")) ==
+        merged.out.substr(0, merged.out.find("\nwrote")));
   const auto lot = logs.json("out/lot.json");
-  bool named = false;
-  for (const auto& s : lot.at("statistics"))
-    for (const auto& o : s.at("outliers")) named = named || o.at("recording") == 3;
-  CHECK(named);
-  const std::string page = test::slurp(logs.folder / "out/lot.html");
-  CHECK_THAT(page, Contains("imu3/report.html") && Contains("<polyline"));
+  CHECK(said_of_lot(lot) == said_of_lot(logs.json("r/lot.json")));
+  CHECK(test::slurp(logs.folder / "out/coefficients.npz") ==
+        test::slurp(logs.folder / "r/coefficients.npz"));
+  CHECK(test::schema_fault(test::slurp(logs.folder / "out/lot.json")) == "");
+  for (const auto& q : lot.at("quantities")) {
+    CHECK(q.at("members") == (q.at("of_kind") == true ? 18 : 9));
+    if (q.at("what") != "white_noise" || q.at("of_kind") == true) continue;
+    REQUIRE(q.at("outliers").size() == 2);
+    for (const auto& o : q.at("outliers"))
+      CHECK(o.at("ratio").get<double>() ==
+            Approx(o.at("device") == "imu3" ? 1.9 : 2.3).epsilon(0.06));
+  }
+  const std::string page = test::slurp(logs.folder / "out/index.html");
+  CHECK_THAT(page, Contains("imu3/report.html") && Contains("<h2>Allan curves</h2>"));
   CHECK(std::filesystem::exists(logs.folder / "out/imu4/report.html"));
+}
+
+TEST_CASE("characterize --lot: limits hold for each log and for the lot") {
+  const Logs logs;
+  const std::vector<std::string> names = {"a.csv", "b.csv"};
+  write_log(logs.folder / "a.csv", "deg/s", 5e-3, 1);  // .3 deg/√h
+  write_log(logs.folder / "b.csv", "deg/s", 1e-2, 2);
+  std::ofstream(logs.folder / "sheet.yaml") << limits_text("0.5");
+  const auto ran = logs.characterize(names, {"--lot", "--limits", logs.path("sheet.yaml")});
+  CHECK(ran.code == 6);
+  CHECK_THAT(ran.out,
+             Contains("Of 2 devices held against limits, 1 fails one, 0 not decided, 1 keeps all"));
+  CHECK(logs.json("out/lot.json").at("limits").at("failing") == 1);
+  for (const char* report : {"out", "out/lot.json"})
+    CHECK_THAT(test::run({"compare", logs.path(report), logs.path("out/a")}).err,
+               Contains("report of a lot of devices"));
 }
 
 TEST_CASE("compare: two characterizations, and what only one of them has") {

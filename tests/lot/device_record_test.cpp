@@ -235,3 +235,21 @@ TEST_CASE(
   }
   CHECK(scanned > 3000);
 }
+
+TEST_CASE("logs side by side are devices, called as their files are, each once") {
+  std::vector<Characterization> logs(3, recording());
+  logs[1].log.file = "other/imu7.csv";
+  logs[2].log.file = "imu8.csv";
+  CHECK_THROWS_WITH(records_of(logs), Contains("E0762") && Contains("same recording"));
+  for (std::size_t i = 0; i < 3; ++i) logs[i].log.sha256 = std::to_string(i);
+  for (ChannelResult& c : logs[2].channels) c.fit.reset();
+  logs[2].channels[0].problems = {"it is constant"};
+  const auto records = records_of(logs);
+  REQUIRE(records.size() == 3);
+  CHECK(records[0].device == "lot/imu7.csv");
+  CHECK(records[1].device == "other/imu7.csv");
+  CHECK(records[2].device == "imu8");
+  CHECK(records[0].channels == record_of(logs[0]).channels);
+  CHECK_THAT(records[2].problem, Contains("E0711") && Contains("it is constant"));
+  CHECK(records[2].channels.empty());
+}

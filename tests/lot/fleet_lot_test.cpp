@@ -237,16 +237,86 @@ TEST_CASE("what is not detected, doubtful or without a fit is counted as that") 
   CHECK_THAT(lot.verdict, Contains("1 recording could not be characterized"));
 }
 
-TEST_CASE("units of one quantity are one channel, unlike ones are not compared") {
-  auto records = test::made_lot({}, 14);
+TEST_CASE("units of one quantity are converted, unlike ones are not compared") {
+  const auto in_degrees = test::made_lot({}, 14);
+  const FleetLot one_unit = fleet_lot(in_degrees);
+  auto records = in_degrees;
   records[0].channels[0].unit = "dps";
-  records[1].channels[0].unit = "rad/s";
-  const FleetLot lot = fleet_lot(records);
-  CHECK(find(lot, "gyro_x", DeviceQuantity::white_noise).counts.members == 199);
-  REQUIRE(lot.notes.size() == 1);
-  CHECK(lot.notes[0] ==
-        "gyro_x of mems has 2 units, deg/s (imu1, imu3, imu4 and 196 more), rad/s (imu2): compared "
+  for (std::size_t i = 1; i < 60; ++i) test::to_radians(records[i]);
+  FleetLotOptions options;
+  options.limits["mems"] = limits("2.5e-3");
+  const FleetLot lot = fleet_lot(records, options);
+  CHECK(lot.notes ==
+        std::vector<std::string>{
+            "gyro_x of mems, gyro_y of mems: recorded in deg/s, rad/s, compared in deg/s."});
+  REQUIRE(lot.quantities.size() == one_unit.quantities.size());
+  for (std::size_t q = 0; q < lot.quantities.size(); ++q) {
+    const QuantityLot &a = lot.quantities[q], &b = one_unit.quantities[q];
+    CAPTURE(a.group, a.unit);
+    CHECK(a.group == b.group);
+    CHECK(a.unit == b.unit);
+    CHECK(a.counts.members == b.counts.members);
+    REQUIRE(a.figures.has_value());
+    CHECK(a.figures->mean == Approx(b.figures->mean).epsilon(1e-12));
+    CHECK(a.figures->spread == Approx(b.figures->spread).epsilon(1e-9));
+  }
+  const FleetLot limited = fleet_lot(in_degrees, options);
+  CHECK(lot.failing > 0);
+  CHECK(lot.failing == limited.failing);
+  CHECK(lot.open == limited.open);
+  records[3].channels[0].unit = "V";
+  const std::vector<std::string> notes = fleet_lot(records).notes;
+  REQUIRE(notes.size() == 2);
+  CHECK(notes[1] ==
+        "gyro_x of mems has 2 units, V (imu4), deg/s (imu1, imu2, imu3 and 196 more): compared "
         "within each.");
+}
+
+TEST_CASE("scales of temperature with unlike zeros are not converted") {
+  auto records = test::made_lot({}, 14);
+  for (DeviceRecord& r : records)
+    for (RecordedChannel& c : r.channels) c.unit = "K";
+  records[1].channels[0].unit = "°C";
+  CHECK(find(fleet_lot(records), "gyro_x", DeviceQuantity::turn_on_bias).counts.members == 199);
+}
+
+TEST_CASE("axes that differ in every device alike are no device's fault, of one device they are") {
+  test::MadeLot made;
+  made.channels = {"gx", "gy", "gz", "gu", "gv"};
+  made.spread[0] = 0.02;
+  made.devices = 12;
+  auto records = test::made_lot(made, 23);
+  const auto louder = [](DeviceRecord& r, std::size_t channel, double by) {
+    r.channels[channel].values[0].value *= by;
+  };
+  for (DeviceRecord& r : records) louder(r, 2, 4);
+  const FleetLot lot = fleet_lot(records);
+  CHECK(lot.verdict == "12 devices. No device stands out from its kind.");
+  CHECK(lot.worst.empty());
+  records.resize(1);
+  const FleetLot axes = fleet_lot(records);
+  CHECK(axes.verdict == "1 device. 1 channel stands out from its kind.");
+  CHECK(axes.outlying == 0);
+  const QuantityLot& kind = find(axes, "angular_rate in deg/s", DeviceQuantity::white_noise);
+  REQUIRE(kind.outliers.size() == 1);
+  CHECK(records[0].channels[kind.outliers[0].channel].name == "gz");
+  CHECK(kind.outliers[0].ratio == Approx(4).epsilon(0.1));
+  louder(records[0], 2, 0.25);
+  CHECK(fleet_lot(records).verdict == "1 device. No channel stands out from its kind.");
+}
+
+TEST_CASE("two that stand out are each held against those that do not") {
+  test::MadeLot made;
+  made.devices = 10;
+  made.spread[0] = 0;
+  auto records = test::made_lot(made, 24);
+  records[3].channels[0].values[0].value *= 1.9;
+  records[7].channels[0].values[0].value *= 2.3;
+  const FleetLot lot = fleet_lot(records);
+  const QuantityLot& q = find(lot, "gyro_x", DeviceQuantity::white_noise);
+  REQUIRE(q.outliers.size() == 2);
+  CHECK(q.outliers[0].ratio == Approx(q.outliers[0].recording == 3 ? 1.9 : 2.3).epsilon(0.04));
+  CHECK(q.outliers[1].ratio == Approx(q.outliers[1].recording == 3 ? 1.9 : 2.3).epsilon(0.04));
 }
 
 TEST_CASE("channels without a unit are no kind of their own") {
@@ -328,7 +398,8 @@ TEST_CASE("one device is a fleet without statistics") {
   made.devices = 1;
   const FleetLot lot = fleet_lot(test::made_lot(made, 17));
   CHECK_FALSE(find(lot, "gyro_x", DeviceQuantity::white_noise).figures);
-  CHECK(lot.verdict == "1 device. No device stands out from its kind.");
+  CHECK(lot.verdict ==
+        "1 device. Too few of a kind to say which stands out: at least 4 are needed.");
 }
 
 TEST_CASE(

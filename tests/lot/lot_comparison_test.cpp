@@ -148,6 +148,55 @@ TEST_CASE("what cannot be compared is said, and lots without a common channel ar
   CHECK_THROWS_WITH(compare_lots(a, {}), Contains("E0752") && Contains("none in B"));
 }
 
+TEST_CASE("lots in several units of one quantity are compared in that of the first") {
+  test::MadeLot made;
+  made.devices = 30;
+  const auto a = test::made_lot(made, 71);
+  auto b = test::made_lot(made, 72);
+  const FleetComparison same = compare_lots(a, b, {.name_a = "May", .name_b = "June"});
+  for (DeviceRecord& r : b) test::to_radians(r);
+  const FleetComparison c = compare_lots(a, b, {.name_a = "May", .name_b = "June"});
+  REQUIRE(c.notes.size() == 2);
+  CHECK(c.notes[0] == "gyro_x of mems is in deg/s in May and in rad/s in June: compared in deg/s.");
+  REQUIRE(c.differences.size() == same.differences.size());
+  for (std::size_t i = 0; i < c.differences.size(); ++i) {
+    CHECK(c.differences[i].unit == same.differences[i].unit);
+    CHECK(c.differences[i].change == Approx(same.differences[i].change).epsilon(1e-9));
+    CHECK(c.differences[i].p_mean == Approx(same.differences[i].p_mean).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("two batches have the means that the report of their lot gives them") {
+  test::MadeLot made;
+  made.devices = 12;
+  auto both = test::made_lot(made, 81);
+  made.batch = "2";
+  made.prefix = "new";
+  test::append(both, test::made_lot(made, 82));
+  for (std::size_t i = 0; i < both.size(); i += 4)
+    for (RecordedChannel& c : both[i].channels) {
+      RecordedValue& k = c.values[2];
+      k.in_all = SquareInAll{0.5 * k.value * k.value, k.value * k.value, 0.5};
+      k.status = Status::not_detected;
+      k.upper95 = 2 * k.value;
+      k.value = kNone;
+    }
+  const std::span<const DeviceRecord> records = both;
+  const FleetComparison c = compare_lots(records.first(12), records.last(12));
+  const FleetLot lot = fleet_lot(both);
+  for (const QuantityLot& q : lot.quantities) {
+    if (q.of_kind) continue;
+    CAPTURE(q.group, title_of(q.quantity));
+    const LotDifference& d = find(c, q.group, q.quantity);
+    REQUIRE(q.batches.size() == 2);
+    CHECK(q.batches[0].figures->mean == d.a.mean);
+    CHECK(q.batches[1].figures->mean == d.b.mean);
+    CHECK(q.batches[1].figures->spread == d.b.spread);
+    const bool of_all = q.quantity == DeviceQuantity::random_walk;
+    CHECK(q.batches[0].in_figures == (of_all ? 12 : q.batches[0].counts.counted));
+  }
+}
+
 TEST_CASE("lots of two devices are compared as far as two devices go") {
   test::MadeLot made;
   made.devices = 2;

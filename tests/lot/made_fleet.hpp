@@ -2,6 +2,7 @@
 // Records of devices drawn from known distributions.
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -111,6 +112,19 @@ inline TemperatureLot made_temperature_lot(const MadeLot& lot,
     out.slope.insert(out.slope.end(), slopes.begin(), slopes.end());
   }
   return out;
+}
+
+/// The same device, recorded in rad/s.
+inline void to_radians(libchar::DeviceRecord& record) {
+  constexpr double factor = std::numbers::pi / 180;
+  for (libchar::RecordedChannel& c : record.channels) {
+    c.unit = "rad/s";
+    for (libchar::RecordedValue& v : c.values) {
+      v.value *= factor;
+      v.ci95 = {factor * v.ci95.low, factor * v.ci95.high};
+      if (!libchar::in_logarithm(v.quantity)) v.sd *= factor;
+    }
+  }
 }
 
 inline void append(std::vector<libchar::DeviceRecord>& to,

@@ -6,8 +6,8 @@
 
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/core/json.hpp"
+#include "libchar/report/fleet_report.hpp"
 #include "libchar/report/html_report.hpp"
-#include "libchar/report/lot_report.hpp"
 #include "libchar/report/runs_report.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic.hpp"
@@ -16,10 +16,21 @@ using namespace libchar;
 
 namespace {
 
+/// A lot of one recording, which is in memory.
+struct OneLot {
+  explicit OneLot(const Characterization& device) : devices{device}, records(records_of(devices)) {
+    records[0].report = "folder";
+    lot = fleet_lot(records);
+    report = {records, &lot, "", {"sensorchar", "characterize"}, devices};
+  }
+  std::vector<Characterization> devices;
+  std::vector<DeviceRecord> records;
+  FleetLot lot;
+  FleetReport report;
+};
+
 std::string lot_page(const Characterization& device) {
-  const std::vector<Characterization> devices = {device};
-  const Lot lot = lot_of(devices);
-  return lot_html({devices, &lot, {"folder"}, {"sensorchar", "characterize"}});
+  return fleet_html(OneLot(device).report);
 }
 
 PooledRuns pooled_of(const std::vector<Characterization>& runs) {
@@ -77,12 +88,34 @@ TEST_CASE("the page of runs says which differs, and draws each with the pooled m
   CHECK(test::count(page, "the pooled model") >= 1);
 }
 
-TEST_CASE("the numbers of a lot and of runs hold no infinity, and read back") {
-  const std::vector<Characterization> devices = {test::hostile()};
-  const Lot lot = lot_of(devices);
-  const LotReport report{devices, &lot, {""}, {}};
-  CHECK(parse_json(dump_json(lot_json(report)), "lot.json").at("format") == "lot");
-  CHECK_FALSE(lot_text(report).empty());
+TEST_CASE("the numbers of a lot whose recordings are in memory keep the schema") {
+  const OneLot one(test::hostile());
+  const std::string document = dump_json(fleet_json(one.report));
+  CHECK(test::schema_fault(document) == "");
+  CHECK(parse_json(document, "lot.json").at("input").size() == 1);
+  CHECK_FALSE(fleet_text(one.report).empty());
+}
+
+TEST_CASE("Allan curves of one quantity stand on one pair of axes, in one unit") {
+  const std::vector<Characterization> devices(2, test::synthetic_imu());
+  std::vector<DeviceRecord> records;
+  for (const Characterization& one : devices) records.push_back(record_of(one));
+  const FleetLot lot = fleet_lot(records);
+  const std::string both = fleet_html({records, &lot, "", {}, devices});
+  std::vector<Characterization> other = devices;
+  for (ChannelResult& c : other[1].channels) {
+    if (c.channel.unit != "deg/s") continue;
+    c.channel.unit = "rad/s";
+    for (AllanPoint& point : c.allan.points) point.deviation *= std::numbers::pi / 180;
+  }
+  const std::string converted = fleet_html({records, &lot, "", {}, other});
+  const auto curves = [](const std::string& page) {
+    const std::size_t at = page.find("<h2>Allan curves"), end = page.find("</section>", at);
+    return page.substr(at, end - at);
+  };
+  CHECK(test::count(curves(both), "<polyline") == 12);
+  CHECK(test::count(curves(both), "<h3>") == 2);
+  CHECK(curves(both) == curves(converted));
 }
 
 TEST_CASE("limits stand in the page, in their order, with a word and not by colour alone") {

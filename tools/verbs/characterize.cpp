@@ -11,7 +11,6 @@
 #include "analysis_options.hpp"
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/limits.hpp"
-#include "libchar/characterize/lot.hpp"
 #include "libchar/characterize/runs.hpp"
 #include "libchar/characterize/settings.hpp"
 #include "libchar/characterize/verification.hpp"
@@ -23,9 +22,9 @@
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/report/characterization_text.hpp"
+#include "libchar/report/fleet_report.hpp"
 #include "libchar/report/json_report.hpp"
 #include "libchar/report/limits_text.hpp"
-#include "libchar/report/lot_report.hpp"
 #include "libchar/report/report_files.hpp"
 #include "libchar/report/runs_report.hpp"
 #include "reading_options.hpp"
@@ -96,15 +95,21 @@ Characterization characterized(Session& session,
   return result;
 }
 
+std::vector<std::string> paths_of(const std::vector<OutputFile>& files) {
+  std::vector<std::string> out;
+  for (const OutputFile& file : files) out.push_back(file.path);
+  return out;
+}
+
 /// A set of more files is named by its first ones.
 constexpr std::size_t kMostNamed = 24;
 
 void say_written(const Session& session,
-                 const std::vector<OutputFile>& outputs,
+                 const std::vector<std::string>& outputs,
                  const std::vector<std::string>& removed) {
   std::string written = "\nwrote";
   const std::size_t named = outputs.size() > kMostNamed ? kMostNamed - 1 : outputs.size();
-  for (std::size_t k = 0; k < named; ++k) written += fmt::format(" {}", printable(outputs[k].path));
+  for (std::size_t k = 0; k < named; ++k) written += fmt::format(" {}", printable(outputs[k]));
   if (named < outputs.size()) written += fmt::format(" and {} more", outputs.size() - named);
   if (!removed.empty()) written += "\nremoved, of an earlier run:";
   for (const std::string& name : removed) written += fmt::format(" {}", printable(name));
@@ -130,7 +135,7 @@ void run_one_by_one(Session& session,
       continue;
     }
     print_beside(session, characterization_text(view, table_width()));
-    say_written(session, outputs, removed);
+    say_written(session, paths_of(outputs), removed);
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
 }
@@ -146,11 +151,8 @@ std::vector<std::string> write_folders(Session& session,
                                        const CharacterizeVerb& verb,
                                        const std::vector<FolderOutputs>& all) {
   const std::vector<std::string> inputs = inputs_of(verb);
-  for (const FolderOutputs& one : all) {
-    std::vector<std::string> paths;
-    for (const OutputFile& file : one.files) paths.push_back(file.path);
-    check_outputs(paths, one.folder, inputs, verb.force);
-  }
+  for (const FolderOutputs& one : all)
+    check_outputs(paths_of(one.files), one.folder, inputs, verb.force);
   std::vector<std::string> removed;
   for (const FolderOutputs& one : all) {
     removed = write_outputs(one.files, one.folder, inputs, verb.force);
@@ -209,7 +211,7 @@ void run_pooled(Session& session,
   const auto removed = write_folders(session, verb, all);
   if (verb.json) return print(dump_json(runs_json(report)));
   print_beside(session, runs_text(report));
-  say_written(session, all.back().files, removed);
+  say_written(session, paths_of(all.back().files), removed);
 }
 
 void run_lot(Session& session,
@@ -218,19 +220,23 @@ void run_lot(Session& session,
              const std::optional<NoiseLimits>& limits,
              Outcome& outcome) {
   const auto results = all_characterized(session, verb, options, limits, outcome);
-  LotOptions how;
-  how.data = options.data;
-  const Lot lot = lot_of(results, how);
-  LotReport report{results, &lot, {}, session.command};
-  std::vector<FolderOutputs> all = single_reports(verb, results, report.folders);
-  all.push_back({verb.folder, lot_files(report, verb.folder)});
-  const auto removed = write_folders(session, verb, all);
-  if (verb.json) return print(dump_json(lot_json(report)));
-  print_beside(session, lot_text(report, table_width()));
+  std::vector<DeviceRecord> records = records_of(results, options.data);
+  std::vector<std::string> folders;
+  const std::vector<FolderOutputs> all = single_reports(verb, results, folders);
+  for (std::size_t r = 0; r < records.size(); ++r) records[r].report = folders[r];
+  FleetLotOptions how;
+  if (limits) how.limits[""] = *limits;
+  const FleetLot lot = fleet_lot(records, how);
+  const FleetReport report{records, &lot, "", session.command, results};
+  check_outputs(fleet_report_files(verb.folder), verb.folder, inputs_of(verb), verb.force);
+  write_folders(session, verb, all);
+  const std::vector<std::string> files = write_fleet_report(report, verb.folder, verb.force);
+  if (verb.json) return print(dump_json(fleet_json(report)));
+  print_beside(session, fleet_text(report, table_width()));
   for (const Characterization& result : results)
     if (result.limits)
       print_beside(session, "\n" + printable(result.log.file) + limits_text(*result.limits));
-  say_written(session, all.back().files, removed);
+  say_written(session, files, {});
 }
 
 /// The files whose names are known before the logs are read.
@@ -247,7 +253,8 @@ void foresee_reports(const CharacterizeVerb& verb) {
                 : folder_for(verb, log, taken),
             {"report.html", "report.json", "curves.csv"});
   if (verb.pool) foresee(verb.folder, {"runs.html", "runs.json"});
-  if (verb.lot) foresee(verb.folder, {"lot.html", "lot.json"});
+  if (verb.lot)
+    foresee_outputs(fleet_report_files(verb.folder), verb.folder, inputs_of(verb), verb.force);
 }
 
 void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {
@@ -333,8 +340,8 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
   options
       .add_flag("--lot",
                 verb->lot,
-                "the LOGs are devices side by side: overlaid curves, mean and spread of each term, "
-                "outliers (lot.html, lot.json)")
+                "compare the LOGs as devices side by side, as fleet merge does: mean and spread of "
+                "each term, outliers, overlaid curves (index.html, lot.json, coefficients.csv)")
       .excludes(pool);
   add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_characterize(session, *verb); };

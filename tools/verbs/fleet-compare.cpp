@@ -121,7 +121,7 @@ void run_compare_fleets(Session& session, const CompareFleetsVerb& verb) {
                     : sides_of_batches(session, verb.fleets[0], batches);
   if (verb.false_alarm) sides.options.false_alarm = *verb.false_alarm;
   FleetComparison comparison = compare_lots(sides.a, sides.b, sides.options);
-  comparison.notes = std::move(sides.notes);
+  comparison.notes.insert(comparison.notes.end(), sides.notes.begin(), sides.notes.end());
   session.terminal.clear();
   const std::string text = verb.json ? dump_json(fleet_comparison_json(comparison, session.command))
                                      : fleet_comparison_text(comparison, table_width());

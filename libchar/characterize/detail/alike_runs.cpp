@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/runs.hpp"
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 
@@ -58,7 +59,7 @@ const ChannelResult* find_channel(const Characterization& result, const std::str
   return nullptr;
 }
 
-void check_files(std::span<const Characterization> runs) {
+void refuse_same_recording(std::span<const Characterization> runs) {
   for (std::size_t i = 0; i < runs.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!runs[i].log.sha256.empty() && runs[i].log.sha256 == runs[j].log.sha256)
@@ -79,7 +80,7 @@ void check_runs(std::span<const Characterization> runs) {
                  "one recording is not several runs",
                  "",
                  "name two at least"});
-  check_files(runs);
+  refuse_same_recording(runs);
   const Characterization& first = runs[0];
   for (const Characterization& run : runs) {
     check_channels(first, run);

@@ -13,7 +13,4 @@ const ChannelResult* find_channel(const Characterization& result, const std::str
 /// Throws Error where the runs cannot be of one sensor (runs.hpp).
 void check_runs(std::span<const Characterization> runs);
 
-/// The same file twice is one recording. Throws Error(input).
-void check_files(std::span<const Characterization> runs);
-
 }  // namespace libchar

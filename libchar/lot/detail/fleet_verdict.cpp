@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "libchar/core/text.hpp"
 
@@ -42,14 +44,30 @@ std::string without_result(const FleetLot& lot) {
   return out;
 }
 
+std::string stand_out(std::size_t count, const char* what) {
+  return count == 1 ? fmt::format(" 1 {} stands out from its kind.", what)
+                    : fmt::format(" {} {}s stand out from their kind.", count, what);
+}
+
 /// That nobody stands out is a finding only where somebody could.
 std::string outlying_sentence(const FleetLot& lot) {
-  if (lot.outlying == 1) return " 1 device stands out from its kind.";
-  if (lot.outlying > 1) return fmt::format(" {} devices stand out from their kind.", lot.outlying);
-  const bool any = std::any_of(lot.quantities.begin(), lot.quantities.end(), [](const auto& q) {
-    return q.counts.counted > 0;
-  });
-  return any ? " No device stands out from its kind." : " There is no result to judge.";
+  std::set<std::pair<std::size_t, std::size_t>> channels;  // of single devices
+  bool any = false, searched = false, axes = true;
+  for (const QuantityLot& q : lot.quantities) {
+    any = any || q.counts.counted > 0;
+    searched = searched || q.searched;
+    axes = axes && (q.of_kind || !q.searched);
+    if (q.of_kind)
+      for (const FleetOutlier& o : q.outliers) channels.emplace(o.recording, o.channel);
+  }
+  if (!any) return " There is no result to judge.";
+  if (!searched)
+    return fmt::format(" Too few of a kind to say which stands out: at least {} are needed.",
+                       kFewestForOutliers);
+  std::string out = lot.outlying > 0 ? stand_out(lot.outlying, "device") : "";
+  if (!channels.empty()) out += stand_out(channels.size(), "channel");
+  if (!out.empty()) return out;
+  return axes ? " No channel stands out from its kind." : " No device stands out from its kind.";
 }
 
 }  // namespace

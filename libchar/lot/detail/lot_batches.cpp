@@ -1,56 +1,46 @@
-// One-way analysis of variance with known uncertainties: core/grouped_effects.hpp.
+// One-way analysis of variance with known uncertainties: grouped_effects.hpp.
 #include "libchar/lot/detail/lot_batches.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/grouped_effects.hpp"
+#include "libchar/lot/detail/grouped_effects.hpp"
 
 namespace libchar {
 namespace {
 
-/// The values of each batch.
-struct BatchValues {
-  std::vector<std::vector<double>> y, v;
-};
-
-BatchValues by_batch(const Fleet& fleet, const LotGroup& group, const QuantityValues& values) {
-  BatchValues out;
-  out.y.resize(fleet.batches.size());
-  out.v.resize(fleet.batches.size());
-  for (std::size_t i = 0; i < values.y.size(); ++i) {
-    const std::size_t b = fleet.batch_of[group.devices[values.member[i]]];
-    out.y[b].push_back(values.y[i]);
-    out.v[b].push_back(values.v[i]);
-  }
-  return out;
+double median_of(std::vector<double> values) {
+  if (values.empty()) return kNone;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
 }  // namespace
 
 void add_batches(const Fleet& fleet, Statistic& s) {
   QuantityLot& out = s.lot;
-  const BatchValues parts = by_batch(fleet, *s.group, s.values);
   const bool logarithm = in_logarithm(out.quantity);
   std::vector<double> y, v;
   std::vector<std::size_t> batch;
   std::size_t compared = 0;
   for (std::size_t b = 0; b < fleet.batches.size(); ++b) {
-    const LotCounts& counts = s.values.batch_counts[b];
-    if (counts.members == 0) continue;
-    BatchLot one{fleet.batches[b], counts, std::nullopt, kNone};
-    std::vector<double> sorted = parts.y[b];
-    std::sort(sorted.begin(), sorted.end());
-    if (!sorted.empty()) {
-      const std::size_t n = sorted.size();
-      const double middle = (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
-      one.median = logarithm ? std::exp(middle) : middle;
+    if (s.values.batch_counts[b].members == 0) continue;
+    const QuantityValues part = values_of_batch(s.values, *s.group, fleet.batch_of, b);
+    const double middle = median_of(part.y);
+    BatchLot one{fleet.batches[b],
+                 part.counts,
+                 std::nullopt,
+                 part.counts.counted,
+                 logarithm ? std::exp(middle) : middle};
+    if (const auto found = effects_of(part, logarithm)) {
+      one.figures = lot_figures(found->effects, logarithm);
+      one.in_figures = found->effects.count;
     }
-    if (const auto effects = lot_effects(parts.y[b], parts.v[b], counts.members)) {
-      one.figures = lot_figures(*effects, logarithm);
-      y.insert(y.end(), parts.y[b].begin(), parts.y[b].end());
-      v.insert(v.end(), parts.v[b].begin(), parts.v[b].end());
-      batch.insert(batch.end(), parts.y[b].size(), compared++);
+    if (enough_count(part.y.size(), part.counts.members)) {
+      y.insert(y.end(), part.y.begin(), part.y.end());
+      v.insert(v.end(), part.v.begin(), part.v.end());
+      batch.insert(batch.end(), part.y.size(), compared++);
     }
     out.batches.push_back(std::move(one));
   }

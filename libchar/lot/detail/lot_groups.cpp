@@ -40,15 +40,41 @@ bool stands_before(const DeviceRecord& a,
   return false;
 }
 
-/// Canonical unit and kind of a unit as it is written. Without a unit nobody knows what two channels have in common: no kind.
+/// A unit as it is written. Without a unit nobody knows what two channels have in common: no kind.
 struct KnownUnit {
-  std::string symbol, kind;
+  std::string symbol, measures;
+  double to_si = 1;
 };
 
 KnownUnit known_unit(const std::string& text) {
   const auto unit = find_unit(text);
-  if (!unit) return {text, text.empty() ? "" : "in " + text};
-  return {unit->symbol, fmt::format("{} in {}", name_of(unit->quantity), unit->symbol)};
+  if (!unit) return {text, text.empty() ? "" : "in " + text, 1};
+  // Scales of temperature have a zero of their own: a mean is not converted by a factor.
+  if (unit->quantity == Quantity::temperature)
+    return {unit->symbol, "in " + unit->symbol, unit->to_si};
+  return {unit->symbol, std::string(name_of(unit->quantity)), unit->to_si};
+}
+
+/// "angular_rate in deg/s", "in counts"
+std::string kind_name(const std::string& symbol) {
+  const auto unit = find_unit(symbol);
+  return unit ? fmt::format("{} in {}", name_of(unit->quantity), symbol) : "in " + symbol;
+}
+
+/// The unit of most recordings; of as many, the first by its spelling.
+void choose_unit(Records records, LotGroup& group) {
+  std::map<std::string, std::size_t> count;
+  for (const LotPlace& p : group.places) ++count[records[p.recording].channels[p.channel].unit];
+  std::map<std::string, std::size_t> symbols;
+  for (const auto& [text, n] : count) symbols[known_unit(text).symbol] += n;
+  const auto most =
+      std::max_element(symbols.begin(), symbols.end(), [](const auto& a, const auto& b) {
+        return a.second < b.second;
+      });
+  group.channel_unit = most->first;
+  const double to_si = known_unit(most->first).to_si;
+  for (const auto& [text, n] : count) group.factor[text] = known_unit(text).to_si / to_si;
+  if (group.of_kind) group.name = kind_name(group.channel_unit);
 }
 
 /// Each device's channels of a group, in order of devices: the recordings of one stand together.
@@ -82,14 +108,14 @@ void number_members(Records records, const std::vector<std::size_t>& device_of, 
 class GroupTable {
  public:
   explicit GroupTable(bool of_kind) : of_kind_(of_kind) {}
-  LotGroup& of(const std::string& type, const std::string& name, const std::string& unit) {
-    key_.assign(type).append(1, '\0').append(name).append(1, '\0').append(unit);
+  LotGroup& of(const std::string& type, const std::string& name, const std::string& measures) {
+    key_.assign(type).append(1, '\0').append(name).append(1, '\0').append(measures);
     const auto [at, fresh] = index_.try_emplace(key_, groups_.size());
     if (fresh) {
       LotGroup& group = groups_.emplace_back();
       group.type = type;
       group.name = name;
-      group.channel_unit = unit;
+      group.measures = measures;
       group.of_kind = of_kind_;
     }
     return groups_[at->second];
@@ -125,6 +151,23 @@ bool several_names(Records records, const LotGroup& kind) {
   });
 }
 
+/// "gx, gy: recorded in deg/s, rad/s, compared in deg/s."
+std::vector<std::string> converted_units(const std::vector<LotGroup>& groups) {
+  std::map<std::string, std::vector<std::string>> channels;
+  for (const LotGroup& group : groups) {
+    std::set<std::string> symbols;
+    for (const auto& [text, factor] : group.factor) symbols.insert(known_unit(text).symbol);
+    if (group.of_kind || symbols.size() < 2) continue;
+    channels[fmt::format(
+                 "recorded in {}, compared in {}", fmt::join(symbols, ", "), group.channel_unit)]
+        .push_back(channel_title(group.name, group.type));
+  }
+  std::vector<std::string> out;
+  for (const auto& [how, names] : channels)
+    out.push_back(fmt::format("{}: {}.", fmt::join(names, ", "), how));
+  return out;
+}
+
 /// The same log of the same device twice: a run that was begun again writes it again.
 std::string copies_note(std::size_t copies) {
   return fmt::format(
@@ -136,6 +179,10 @@ std::string copies_note(std::size_t copies) {
 
 std::string unit_title(const std::string& channel_unit) {
   return channel_unit.empty() ? "no unit" : channel_unit;
+}
+
+std::string channel_title(const std::string& channel, const std::string& type) {
+  return type.empty() ? channel : channel + " of " + type;
 }
 
 SortedRecords sorted_records(Records records) {
@@ -181,9 +228,9 @@ std::vector<LotGroup> lot_groups(Records records, const SortedRecords& sorted) {
       auto unit = units.find(channel.unit);
       if (unit == units.end()) unit = units.emplace(channel.unit, known_unit(channel.unit)).first;
       const LotPlace place{static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c)};
-      names.of(records[r].type, channel.name, unit->second.symbol).places.push_back(place);
-      if (!unit->second.kind.empty())
-        kinds.of(records[r].type, unit->second.kind, unit->second.symbol).places.push_back(place);
+      const std::string& measures = unit->second.measures;
+      names.of(records[r].type, channel.name, measures).places.push_back(place);
+      if (!channel.unit.empty()) kinds.of(records[r].type, "", measures).places.push_back(place);
     }
   std::vector<LotGroup> out;
   for (LotGroup& kind : kinds.take())
@@ -192,14 +239,32 @@ std::vector<LotGroup> lot_groups(Records records, const SortedRecords& sorted) {
   std::stable_sort(out.begin(), out.end(), [](const LotGroup& a, const LotGroup& b) {
     return a.of_kind != b.of_kind ? a.of_kind : compared(a.type, b.type) < 0;
   });
-  for (LotGroup& group : out) number_members(records, sorted.device_of, group);
+  for (LotGroup& group : out) {
+    choose_unit(records, group);
+    number_members(records, sorted.device_of, group);
+  }
   return out;
+}
+
+bool shows_outliers(const LotGroup& group) {
+  return !group.of_kind || group.devices.front() == group.devices.back();
+}
+
+double factor_of(const LotGroup& group, const RecordedChannel& channel, DeviceQuantity quantity) {
+  if (quantity == DeviceQuantity::gauss_markov_time) return 1;
+  return group.factor.size() == 1 ? group.factor.begin()->second : group.factor.at(channel.unit);
+}
+
+void convert_group(const std::string& channel_unit, LotGroup& group) {
+  const double by = known_unit(group.channel_unit).to_si / known_unit(channel_unit).to_si;
+  for (auto& [text, factor] : group.factor) factor *= by;
+  group.channel_unit = channel_unit;
 }
 
 std::vector<std::string> unlike_records(Records records,
                                         const SortedRecords& sorted,
                                         const std::vector<LotGroup>& groups) {
-  std::vector<std::string> out;
+  std::vector<std::string> out = converted_units(groups);
   std::map<std::pair<std::string, std::string>, std::map<std::string, std::string>> units;
   for (const LotGroup& group : groups)
     if (!group.of_kind)
@@ -209,9 +274,8 @@ std::vector<std::string> unlike_records(Records records,
     if (found.size() < 2) continue;
     std::vector<std::string> each;
     for (const auto& [unit, text] : found) each.push_back(text);
-    out.push_back(fmt::format("{}{} has {} units, {}: compared within each.",
-                              channel.second,
-                              channel.first.empty() ? "" : " of " + channel.first,
+    out.push_back(fmt::format("{} has {} units, {}: compared within each.",
+                              channel_title(channel.second, channel.first),
                               found.size(),
                               fmt::join(each, ", ")));
   }

@@ -2,6 +2,7 @@
 // Records sorted into devices and into groups of channels that can be compared.
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,8 +17,11 @@ struct LotPlace {
 };
 
 struct LotGroup {
-  std::string type, name,
-      channel_unit;  ///< the name of a channel or of a kind; the unit in its canonical spelling
+  std::string type, name;    ///< the name of a channel, or of a kind
+  std::string measures;      ///< what its units have in common: "angular_rate"
+  std::string channel_unit;  ///< that of most recordings, in its canonical spelling
+  /// Of each unit as its recordings spell it: a value times this is in `channel_unit`.
+  std::map<std::string, double> factor;
   bool of_kind = false;
   std::vector<LotPlace> places;        ///< those of one member follow each other
   std::vector<std::uint32_t> member;   ///< of each place: 0, 1, … in order
@@ -37,12 +41,24 @@ SortedRecords sorted_records(std::span<const DeviceRecord> records);
 
 /// The unit, or "no unit".
 std::string unit_title(const std::string& channel_unit);
+/// "gx of imu-x", or "gx" without a type.
+std::string channel_title(const std::string& channel, const std::string& type);
 
-/// Channels of one type, name and unit; and, where a type has several of one kind and unit, all of them. Kinds first.
+/// Channels of one type and name whose units are of one quantity; and, where a type has several of one kind, all of them. Kinds first.
 std::vector<LotGroup> lot_groups(std::span<const DeviceRecord> records,
                                  const SortedRecords& sorted);
 
-/// Channels of one type and name, and unlike units; records made with unlike settings or versions.
+/// Who stands out is asked of a channel among devices, and of a kind only where one device has all of its channels: what axes of every
+/// device differ by is no device's fault.
+bool shows_outliers(const LotGroup& group);
+
+/// What a value of the channel is multiplied by to be in the unit of the group's.
+double factor_of(const LotGroup& group, const RecordedChannel& channel, DeviceQuantity quantity);
+
+/// Gives a group the unit of another one that measures the same.
+void convert_group(const std::string& channel_unit, LotGroup& group);
+
+/// Channels of one type and name in several units, whether they can be converted or not; records made with unlike settings or versions.
 std::vector<std::string> unlike_records(std::span<const DeviceRecord> records,
                                         const SortedRecords& sorted,
                                         const std::vector<LotGroup>& groups);

@@ -35,19 +35,20 @@ int rank_of(LimitStatus status) {
   return status == LimitStatus::fail ? 2 : status == LimitStatus::not_decided ? 1 : 0;
 }
 
-LimitFailure failure_of(const RecordedChannel& channel,
-                        const RecordedValue& value,
-                        const GroupLimit& limit) {
+LimitFailure failure_of(const LotGroup& group, const Coefficient& found, const GroupLimit& limit) {
   LimitFailure out;
+  const double value = found.value.value_or(limit.most);
   // Without a standard deviation the interval, which lies above the limit, says it.
-  const double sd = value.sd > 0 ? value.sd : std::log(value.value / value.ci95.low) / kNormal95;
-  out.deviation = std::log(value.value / limit.most) / std::max(sd, 1e-9);
+  const double sd =
+      found.relative_sd > 0 ? found.relative_sd : std::log(value / found.ci95.low) / kNormal95;
+  out.deviation = std::log(value / limit.most) / std::max(sd, 1e-9);
   out.p = std::erfc(out.deviation / std::sqrt(2.0)) / 2;
-  const std::string unit = unit_of(value.quantity, channel.unit);
+  const DeviceQuantity quantity = quantity_of(limit.term);
+  const std::string unit = unit_of(quantity, group.channel_unit);
   out.sentence = fmt::format("{}: {} {} {}, allowed {}.",
-                             channel.name,
-                             title_of(value.quantity),
-                             coefficient_text(coefficient_of(value)),
+                             group.name,
+                             title_of(quantity),
+                             coefficient_text(found),
                              unit,
                              limit_text(limit.text, limit.most, unit));
   return out;
@@ -86,13 +87,15 @@ LimitCount judge_members(std::span<const DeviceRecord> records,
     const LotPlace& place = group.places[i];
     const RecordedChannel& channel = records[place.recording].channels[place.channel];
     const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
-    const LimitStatus status =
-        judge_limit(value == nullptr ? Coefficient{} : coefficient_of(*value), limit.most);
+    const Coefficient found = value == nullptr
+                                  ? Coefficient{}
+                                  : coefficient_of(*value, factor_of(group, channel, quantity));
+    const LimitStatus status = judge_limit(found, limit.most);
     const bool same = i > 0 && group.member[i] == group.member[i - 1];
     if (!same) out.status.push_back(status);
     if (rank_of(status) > rank_of(out.status.back())) out.status.back() = status;
     if (status != LimitStatus::fail) continue;
-    LimitFailure failure = failure_of(channel, *value, limit);
+    LimitFailure failure = failure_of(group, found, limit);
     failure.member = group.member[i];
     failure.place = place;
     out.failures.push_back(std::move(failure));

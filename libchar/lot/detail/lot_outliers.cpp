@@ -67,13 +67,16 @@ void add_outliers(const Fleet& fleet, double probability, Statistic& s) {
 }  // namespace
 
 void search_outliers(const Fleet& fleet, double probability, std::vector<Statistic>& statistics) {
-  const auto searched = [](const Statistic& s) {
-    return !s.lot.of_kind && s.lot.effects && 3 * s.lot.counts.counted >= 2 * s.lot.counts.members;
-  };
-  const auto count = std::count_if(statistics.begin(), statistics.end(), searched);
-  if (count == 0) return;
+  std::size_t count = 0;
+  for (Statistic& s : statistics) {
+    const LotCounts& counts = s.lot.counts;
+    s.lot.searched = shows_outliers(*s.group) && s.lot.effects &&
+                     counts.counted >= kFewestForOutliers &&
+                     enough_count(counts.counted, counts.members);
+    count += s.lot.searched;
+  }
   tbb::parallel_for(std::size_t{0}, statistics.size(), [&](std::size_t i) {
-    if (searched(statistics[i]))
+    if (statistics[i].lot.searched)
       add_outliers(fleet, probability / static_cast<double>(count), statistics[i]);
   });
 }

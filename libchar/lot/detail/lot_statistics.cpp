@@ -30,7 +30,6 @@ void add_figures(Statistic& s) {
   QuantityLot& lot = s.lot;
   const bool logarithm = in_logarithm(lot.quantity);
   const auto found = effects_of(s.values, logarithm);
-  s.values.squares = {};  // of a hundred thousand devices, many megabytes
   if (!found) return;
   lot.effects = found->effects;
   lot.figures = lot_figures(found->effects, logarithm);
@@ -91,6 +90,7 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
   add_quantiles(s.values.y, logarithm, lot);
   lot.histogram = histogram_of(s.values.y);
   if (fleet.batches.size() > 1) add_batches(fleet, s);
+  s.values.squares = {};  // of a hundred thousand devices, many megabytes
   if (!group.of_kind) add_chart(s, lot);
   if (s.limited) {
     s.limit = judge_members(fleet.records, group, *limit);

@@ -19,15 +19,16 @@ struct Measured {
   double y = 0, v = 0;
 };
 
-Measured measured(const RecordedChannel& channel, DeviceQuantity quantity) {
+Measured measured(const RecordedChannel& channel, DeviceQuantity quantity, double factor) {
   const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
   if (value == nullptr) return {};
   if (value->status == Status::not_detected) return {Known::not_detected};
   if (value->status != Status::detected && value->status != Status::given) return {Known::doubtful};
   const LogCoefficient in_logarithms =
-      in_logarithm(quantity) ? log_coefficient(coefficient_of(*value)) : LogCoefficient{};
-  const double y = in_logarithm(quantity) ? in_logarithms.y : value->value,
-               v = in_logarithm(quantity) ? in_logarithms.v : value->sd * value->sd;
+      in_logarithm(quantity) ? log_coefficient(coefficient_of(*value, factor)) : LogCoefficient{};
+  const double sd = factor * value->sd,
+               y = in_logarithm(quantity) ? in_logarithms.y : factor * value->value,
+               v = in_logarithm(quantity) ? in_logarithms.v : sd * sd;
   // A square that a double does not hold is no uncertainty either.
   const bool usable =
       std::isfinite(y) && std::abs(y) < kLargest && v > 1 / kLargest && v < kLargest;
@@ -46,10 +47,13 @@ struct SquareSums {
 };
 
 /// False where its record was fitted and it has no square.
-bool add_square(const RecordedChannel& channel, DeviceQuantity quantity, SquareSums& sums) {
+bool add_square(const RecordedChannel& channel,
+                DeviceQuantity quantity,
+                double factor,
+                SquareSums& sums) {
   const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
   if (value == nullptr || !was_sought(value->status)) return true;
-  const auto one = square_in_lot(coefficient_of(*value));
+  const auto one = square_in_lot(coefficient_of(*value, factor));
   if (!one) return false;
   sums.count += 1;
   sums.square += one->square;
@@ -59,12 +63,13 @@ bool add_square(const RecordedChannel& channel, DeviceQuantity quantity, SquareS
   return std::abs(one->square) < kLargest && one->sd < kLargest && one->sd > 1 / kLargest;
 }
 
-void add_member(const SquareSums& sums, LotSquares& out) {
+void add_member(const SquareSums& sums, std::uint32_t member, LotSquares& out) {
   if (sums.count == 0) return;
   out.square.push_back(sums.square / sums.count);
   out.sd.push_back(std::sqrt(sums.variance) / sums.count);
   out.skewness.push_back(sums.third / std::pow(sums.variance, 1.5));
   out.samples.push_back(sums.samples);
+  out.member.push_back(member);
 }
 
 void count(Known known, LotCounts& out) {
@@ -92,19 +97,21 @@ MemberRecordings member_recordings(std::span<const DeviceRecord> records,
     for (; i < group.places.size() && group.member[i] == member; ++i) {
       const LotPlace& place = group.places[i];
       const DeviceRecord& record = records[place.recording];
-      const Measured one = measured(record.channels[place.channel], quantity);
+      const RecordedChannel& channel = record.channels[place.channel];
+      const double factor = factor_of(group, channel, quantity);
+      const Measured one = measured(channel, quantity, factor);
       best = std::max(best, one.known);
-      squared = squared && add_square(record.channels[place.channel], quantity, squares);
+      squared = squared && add_square(channel, quantity, factor, squares);
       if (one.known != Known::counted) continue;
       out.y.push_back(one.y);
       out.v.push_back(one.v);
-      out.samples.push_back(static_cast<double>(record.channels[place.channel].samples));
+      out.samples.push_back(static_cast<double>(channel.samples));
       out.temperature_c.push_back(temperature_of(record));
       out.place.push_back(place);
       out.member.push_back(out.members.size());
     }
     if (best == Known::counted) out.members.push_back(member);
-    if (squared) add_member(squares, out.squares);
+    if (squared) add_member(squares, member, out.squares);
     count(best, out.counts);
     count(best, out.batch_counts[batch_of[group.devices[member]]]);
   }

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/characterize/lot_figures.hpp"
+#include "libchar/lot/detail/lot_figures.hpp"
 #include "libchar/lot/detail/lot_groups.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 

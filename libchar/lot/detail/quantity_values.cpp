@@ -1,5 +1,5 @@
 // A member with several recordings has the value sum w_i y_i / sum w_i, w_i = 1 / (v_i + s²), and the variance 1 / sum w_i, where s is the
-// spread from recording to recording of one member, found over all members that have several (core/grouped_effects.hpp): a sensor that
+// spread from recording to recording of one member, found over all members that have several (detail/grouped_effects.hpp): a sensor that
 // is switched on again has another bias, and a member that was recorded once is not known better than that. Where members were recorded at
 // several temperatures their biases are those of their lines (temperature_lines.cpp).
 // A temperature coefficient is found inside a recording that has a thermometer, or as the slope of the biases of several recordings. One lot
@@ -13,8 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/characterize/lot_figures.hpp"
-#include "libchar/core/grouped_effects.hpp"
+#include "libchar/lot/detail/grouped_effects.hpp"
+#include "libchar/lot/detail/lot_figures.hpp"
 #include "libchar/lot/detail/member_recordings.hpp"
 #include "libchar/lot/detail/temperature_lines.hpp"
 
@@ -128,6 +128,30 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
     for (std::size_t i = 0; i < found.member.size(); ++i)
       out.samples[found.member[i]] += found.samples[i];
   }
+  return out;
+}
+
+QuantityValues values_of_batch(const QuantityValues& all,
+                               const LotGroup& group,
+                               const std::vector<std::size_t>& batch_of,
+                               std::size_t batch) {
+  QuantityValues out;
+  out.counts = all.batch_counts[batch];
+  const auto take = [&](const std::vector<std::uint32_t>& member,
+                        const std::vector<double>& from,
+                        std::vector<double>& to) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (batch_of[group.devices[member[i]]] == batch) to.push_back(from[i]);
+  };
+  for (const auto values : {&QuantityValues::y,
+                            &QuantityValues::v,
+                            &QuantityValues::samples,
+                            &QuantityValues::v_low,
+                            &QuantityValues::v_high})
+    take(all.member, all.*values, out.*values);
+  for (const auto values :
+       {&LotSquares::square, &LotSquares::sd, &LotSquares::skewness, &LotSquares::samples})
+    take(all.squares.member, all.squares.*values, out.squares.*values);
   return out;
 }
 

@@ -33,6 +33,12 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
                                const std::vector<std::size_t>& batch_of,
                                std::size_t batches);
 
+/// Those of the members of one batch.
+QuantityValues values_of_batch(const QuantityValues& all,
+                               const LotGroup& group,
+                               const std::vector<std::size_t>& batch_of,
+                               std::size_t batch);
+
 /// Mean and spread of a quantity over its members.
 struct QuantityEffects {
   RandomEffects effects;
@@ -41,7 +47,7 @@ struct QuantityEffects {
       false;  ///< also of members that do not count, by the squares of what their records show
 };
 
-/// Of those that count, where they are enough (characterize/lot_figures.hpp); of a noise term that some have and others do not, of all where
+/// Of those that count, where they are enough (lot_figures.hpp); of a noise term that some have and others do not, of all where
 /// their squares are known and a third of them was detected.
 std::optional<QuantityEffects> effects_of(const QuantityValues& values, bool of_logarithms);
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "libchar/core/grouped_lines.hpp"
+#include "libchar/lot/detail/grouped_lines.hpp"
 #include "libchar/lot/detail/member_recordings.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 

@@ -59,7 +59,7 @@ void mark_devices(const Fleet& fleet, const std::vector<Statistic>& statistics, 
       held(out.devices);
   for (const Statistic& s : statistics) {
     for (const FleetOutlier& o : s.lot.outliers)
-      outlying[fleet.sorted.device_of[o.recording]] = true;
+      if (!s.lot.of_kind) outlying[fleet.sorted.device_of[o.recording]] = true;
     for (std::size_t m = 0; m < s.limit.status.size(); ++m) {
       const std::size_t device = s.group->devices[m];
       held[device] = true;

@@ -8,8 +8,10 @@
 #include "libchar/characterize/limits.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_tables.hpp"
+#include "libchar/report/detail/many_pieces.hpp"
 #include "libchar/report/detail/svg_lot.hpp"
 
 namespace libchar {
@@ -60,8 +62,8 @@ std::string off_text(const QuantityLot& q) {
                                 : "a factor of " + number_text(q.left_out->factor, 2));
 }
 
-std::string channel_unit_text(const QuantityLot& q) {
-  return q.channel_unit.empty() ? "U" : q.channel_unit;
+std::string channel_unit_text(const std::string& unit) {
+  return unit.empty() ? "U" : unit;
 }
 
 std::string batches_text(const QuantityLot& q) {
@@ -124,7 +126,8 @@ std::string batch_table(const QuantityLot& q) {
     const BatchLot& one = q.batches[b];
     rows += table_row(
         {batch_title(one.batch),
-         mean_text(one.figures, q.unit),
+         mean_text(one.figures, q.unit) +
+             (one.in_figures > one.counts.counted ? ", of " + count_text(one.in_figures) : ""),
          one.figures ? spread_text(one.figures->spread, one.figures->spread_ci95, logarithm, q.unit)
                      : "–",
          std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit,
@@ -155,7 +158,7 @@ std::string coefficient_sentence(const QuantityLot& q) {
       plural(t.devices, "device"),
       plural(t.recordings, "recording"),
       range_text(t.range_c),
-      spread_text(t.repeatability, t.repeatability_ci95, false, channel_unit_text(q)),
+      spread_text(t.repeatability, t.repeatability_ci95, false, channel_unit_text(q.channel_unit)),
       t.dof);
   if (t.in_one_recording > 0)
     out += fmt::format(
@@ -234,7 +237,7 @@ std::string of_all_sentence(const QuantityLot& q) {
   return fmt::format(
       "Mean and spread are of {} of {} devices: of those that are not detected or doubtful too, by "
       "what their records show of the square, as values of a lognormal distribution. Not counted: "
-      "{}. Histogram, batches, chart and outliers are of the {} that count.",
+      "{}. Histogram, comparison of batches, chart and outliers are of the {} that count.",
       count_text(q.effects->count),
       count_text(q.counts.members),
       not_counted(q.counts),
@@ -281,6 +284,52 @@ std::string sentences(const QuantityLot& q) {
   return bullet_list(out, "facts");
 }
 
+/// Curves of one quantity, in the unit of the first.
+struct AllanFigure {
+  std::string measures, unit, deviation;
+  double to_si = 1;
+  std::vector<SvgCurve> curves;
+};
+
+AllanFigure& figure_of(const Channel& channel,
+                       const std::optional<Unit>& unit,
+                       std::vector<AllanFigure>& figures) {
+  const std::string measures = unit                   ? std::string(name_of(unit->quantity))
+                               : channel.unit.empty() ? "no unit"
+                                                      : "in " + channel.unit;
+  const auto at = std::find_if(
+      figures.begin(), figures.end(), [&](const AllanFigure& f) { return f.measures == measures; });
+  if (at != figures.end()) return *at;
+  return figures.emplace_back(AllanFigure{measures,
+                                          unit ? unit->symbol : channel_unit_text(channel.unit),
+                                          "",
+                                          unit ? unit->to_si : 1,
+                                          {}});
+}
+
+bool stands_out(const FleetLot& lot, std::size_t recording, std::size_t channel) {
+  for (const QuantityLot& q : lot.quantities)
+    for (const FleetOutlier& o : q.outliers)
+      if (o.recording == recording && o.channel == channel) return true;
+  return false;
+}
+
+void add_curve(const FleetReport& report,
+               std::size_t recording,
+               std::size_t channel,
+               std::vector<AllanFigure>& figures) {
+  const ChannelResult& result = report.recordings[recording].channels[channel];
+  const auto unit = find_unit(result.channel.unit);
+  AllanFigure& figure = figure_of(result.channel, unit, figures);
+  figure.deviation = name_of(result.allan.type);
+  SvgCurve curve = allan_svg(result.allan, unit ? unit->to_si / figure.to_si : 1);
+  curve.name = result.channel.name + " · " + report.records[recording].device;
+  curve.colour = figure.curves.size();
+  curve.strong = stands_out(*report.lot, recording, channel);
+  if (curve.strong) curve.name += " (stands out)";
+  figure.curves.push_back(std::move(curve));
+}
+
 }  // namespace
 
 std::string celsius_text(double t) {
@@ -323,6 +372,22 @@ std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lo
   const std::size_t columns = quantity_heads(lot, q.of_kind).size();
   if (lot.batches.size() > 1) out.push_back(batches_text(q));
   if (out.size() < columns) out.push_back(limit_cell(q));
+  return out;
+}
+
+std::string allan_figures(const FleetReport& report) {
+  std::vector<AllanFigure> figures;
+  for (std::size_t r = 0; r < report.recordings.size(); ++r)
+    for (std::size_t c = 0; c < report.recordings[r].channels.size(); ++c)
+      add_curve(report, r, c, figures);
+  std::string out;
+  for (const AllanFigure& f : figures) {
+    const std::string drawing = svg_curves(f.curves,
+                                           {"averaging time τ, s",
+                                            f.deviation + ", " + f.unit,
+                                            "Allan curves of all channels, " + f.measures});
+    if (!drawing.empty()) out += "<h3>" + html_text(f.measures) + "</h3>\n" + drawing;
+  }
   return out;
 }
 

@@ -18,6 +18,9 @@ std::string celsius_text(double t);
 std::vector<std::string> quantity_heads(const FleetLot& lot, bool of_kind);
 std::vector<std::string> quantity_cells(const QuantityLot& quantity, const FleetLot& lot);
 
+/// The Allan curves of all channels, a drawing for each quantity that they measure; "" where the recordings are not in memory.
+std::string allan_figures(const FleetReport& report);
+
 /// Histogram, control chart, batches, repeats, limit of one quantity; "" where nothing is known of it.
 std::string quantity_figures(const FleetReport& report, const QuantityLot& quantity);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the pages of several recordings share (runs of a sensor, a lot of devices).
+// What the reports of several recordings share (runs of a sensor, a lot of devices).
 
 #include <span>
 #include <string>
@@ -7,43 +7,42 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/json.hpp"
+#include "libchar/lot/device_record.hpp"
+#include "libchar/report/detail/svg_curves.hpp"
 
 namespace libchar {
 
-/// A recording on such a page: its name, and where its own report is, relative to the page ("" : nowhere).
-struct Recorded {
-  std::string name, folder;
-};
-
 /// The coefficients of a channel for a table: white noise, bias instability, random walk, goodness of fit.
-std::vector<std::string> coefficient_cells(const Channel& channel, const NoiseFit* fit);
+std::vector<std::string> coefficient_cells(const Channel& channel, const NoiseFit& fit);
 /// Heads of those cells.
 std::vector<std::string> coefficient_heads();
 
-/// A row a recording × channel, with links to the reports.
-std::string recordings_table(std::span<const Characterization> recordings,
-                             const std::vector<Recorded>& names);
+struct ChannelRow {
+  std::string recording,
+      report;  ///< what it is called, and the folder of its own page, relative to this one ("": none)
+  std::string channel;
+  std::vector<std::string> cells;  ///< under coefficient_heads
+};
 
-/// "White noise 0.0050 deg/s·√s [0.0049, 0.0051]" of a term in its own unit.
-std::string with_unit(const Coefficient& c, Term term, const std::string& unit);
+/// One row per channel.
+std::vector<ChannelRow> channel_rows(const DeviceRecord& record, const std::string& name);
 
-/// Input files with their hashes, the command.
+/// The name, with a link to the page in that folder where there is one.
+std::string report_link(const std::string& name, const std::string& folder);
+
+/// `recordings`: the head of their names.
+std::string channels_table(const std::string& recordings, const std::vector<ChannelRow>& rows);
+
+/// The points of the curve that can be relied on, times a factor.
+SvgCurve allan_svg(const AllanCurve& allan, double factor = 1);
+
+/// Input files with their hashes, where they are in memory; the command.
 std::string many_provenance(std::span<const Characterization> recordings,
                             const std::vector<std::string>& command);
 
-/// {file, sha256, samples, rate_hz, report} of each recording.
-Json recordings_json(std::span<const Characterization> recordings,
-                     const std::vector<Recorded>& names);
-
-/// The head of a document about them.
+/// The head of a document about them, with their settings.
 Json many_head(const std::string& format,
                std::span<const Characterization> recordings,
                const std::vector<std::string>& command);
-
-/// The page: body within the frame of every page, its numbers in `document`.
-std::string many_page(const std::string& title,
-                      const std::string& subject,
-                      const std::string& body,
-                      const Json& document);
 
 }  // namespace libchar

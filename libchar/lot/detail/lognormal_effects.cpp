@@ -8,7 +8,7 @@
 // narrow. Whoever was detected or not does not enter. Spread: the maximum of the likelihood with the mean integrated out to first order (Cox &
 // Reid, J. R. Stat. Soc. B 49 (1987) 1), interval by its fall of 1.92. Means: profiles over the spread, with the fall n/2 ln(1 + t²/(n - 1))
 // that makes them Student's t where the values are known. Of what many fits find: docs/theory/lots.md.
-#include "libchar/core/lognormal_effects.hpp"
+#include "libchar/lot/detail/lognormal_effects.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -21,12 +21,12 @@
 #include <vector>
 
 #include "libchar/core/distributions.hpp"
-#include "libchar/core/length_class.hpp"
+#include "libchar/lot/detail/length_class.hpp"
 
 namespace libchar {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 constexpr double kFall95 = 1.9207294103470621;  ///< of a log-likelihood: half of chi-square's 95 %
 
 /// Root of k/2, at least: no sum of chi-squares is more skew than one of four degrees of freedom.
@@ -143,7 +143,7 @@ std::vector<Point> points_of(const SquareEstimates& in) {
     std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
       return in.square[a] < in.square[b];
     });
-    double first = -kInfinity;
+    double first = -kNoEnd;
     for (const std::size_t i : sorted) {
       const double square = in.square[i];
       const bool joins =
@@ -172,7 +172,7 @@ double log_density(const Point& point, double square) {
 class Likelihood {
  public:
   explicit Likelihood(const std::vector<Point>& points) {
-    double top = 0, bottom = kInfinity, narrowest = kCoarsest;
+    double top = 0, bottom = kNoEnd, narrowest = kCoarsest;
     for (const Point& p : points) {
       const double sd = p.error.sd_at(std::max(p.square, 0.0));
       top = std::max(top, p.square + 6 * sd);
@@ -250,7 +250,7 @@ double rises(Function&& f, double at, double step, double end, double rise) {
       return (ends.first + ends.second) / 2;
     }
   } while (outside != end);
-  return std::copysign(kInfinity, step);
+  return std::copysign(kNoEnd, step);
 }
 
 /// The likelihood over the mean alone, or over ln E[c] = mean + spread²/2 (`half` = 1/2), its spread the best there.

@@ -4,12 +4,12 @@
 // s² is pooled over the groups: Q(s²), the weighted sum of squares about all lines, is chi-square with (values - 2 a line - 1 a mean) degrees
 // of freedom at the true s² (detail/within_spread.hpp). So the error of a slope is what the values scatter by from one to the next, which
 // two values of a group do not show and those of all groups together do.
-#include "libchar/core/grouped_lines.hpp"
+#include "libchar/lot/detail/grouped_lines.hpp"
 
 #include <cmath>
 
-#include "libchar/core/detail/within_spread.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/lot/detail/within_spread.hpp"
 
 namespace libchar {
 namespace {

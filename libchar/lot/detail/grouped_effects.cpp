@@ -3,15 +3,15 @@
 // Groups' means differ more than that by Fisher's F of the one-way analysis of variance (Fisher 1925), with these weights
 //   F = sum_g W_g (m_g - m)² / (G - 1) / max(1, Q(s²) / (n - G)),   W_g = sum_i 1 / (v_i + s²),
 // exact for equal variances. Spread between: random effects of the m_g with variances 1 / W_g.
-#include "libchar/core/grouped_effects.hpp"
+#include "libchar/lot/detail/grouped_effects.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/detail/weighted.hpp"
-#include "libchar/core/detail/within_spread.hpp"
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/weighted.hpp"
+#include "libchar/lot/detail/within_spread.hpp"
 
 namespace libchar {
 namespace {

@@ -4,16 +4,15 @@
 // Knapp's interval holds for any weights. And theta = c² is what a fit finds without bias, so that E[ln c] = ln c - v to second order, which
 // is put back. Mean over 200 devices of three terms each: docs/theory/lots.md. The spread, which both would hardly move, is Paule and
 // Mandel's of the v_i.
-#include "libchar/characterize/lot_figures.hpp"
+#include "libchar/lot/detail/lot_figures.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
 
-#include "libchar/core/length_class.hpp"
 #include "libchar/core/median.hpp"
-#include "libchar/core/not_known.hpp"
+#include "libchar/lot/detail/length_class.hpp"
 
 namespace libchar {
 namespace {
@@ -39,7 +38,7 @@ std::vector<double> typical_variances(std::span<const double> variance,
 std::optional<RandomEffects> lot_effects(std::span<const double> value,
                                          std::span<const double> variance,
                                          std::size_t members) {
-  if (value.size() < 2 || 3 * value.size() < 2 * members) return std::nullopt;
+  if (!enough_count(value.size(), members)) return std::nullopt;
   return random_effects(value, variance);
 }
 
@@ -94,12 +93,6 @@ std::optional<LognormalEffects> effects_of_all(const LotSquares& squares,
   if (known <= counted || known < 3 || counted < 2 || 3 * counted < members) return std::nullopt;
   return lognormal_effects(
       {squares.square, squares.sd, squares.skewness, squares.samples, kExcess});
-}
-
-LotFigures lot_figures(const LognormalEffects& effects) {
-  return lot_figures(
-      {effects.count, effects.mean, effects.mean_ci95, effects.spread, effects.spread_ci95, kNone},
-      true);
 }
 
 LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms) {

@@ -1,6 +1,6 @@
 // Values in groups: what differs within and between them.
 
-#include "libchar/core/grouped_effects.hpp"
+#include "libchar/lot/detail/grouped_effects.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Squares of which some are not told from zero.
 
-#include "libchar/core/lognormal_effects.hpp"
+#include "libchar/lot/detail/lognormal_effects.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -39,7 +39,7 @@ Squares made(std::size_t count,
   return out;
 }
 
-bool holds(const Interval& i, double value) {
+bool in_interval(const Interval& i, double value) {
   return i.low <= value && value <= i.high;
 }
 
@@ -70,9 +70,9 @@ TEST_CASE("mean and spread of squares, of which many are below zero, lie in thei
     for (int i = 0; i < kLots; ++i) {
       const Squares in = made(60, 2, spread, 3 * std::exp(4.0), 20, gauss);
       const LognormalEffects found = lognormal_effects(in.estimates());
-      mean += holds(found.mean_ci95, 2);
-      arithmetic += holds(found.arithmetic_ci95, 2 + spread * spread / 2);
-      width += holds(found.spread_ci95, spread);
+      mean += in_interval(found.mean_ci95, 2);
+      arithmetic += in_interval(found.arithmetic_ci95, 2 + spread * spread / 2);
+      width += in_interval(found.spread_ci95, spread);
       for (const double q : in.square) negative += q < 0;
     }
     INFO("spread " << spread << ": " << mean << " " << arithmetic << " " << width);
@@ -119,9 +119,9 @@ TEST_CASE(
   }
   in.sd[0] *= 1e-5;
   const LognormalEffects found = lognormal_effects(in.estimates());
-  CHECK(holds(found.mean_ci95, 1));
+  CHECK(in_interval(found.mean_ci95, 1));
   CHECK(found.mean_ci95.high - found.mean_ci95.low < 0.15);
-  CHECK(holds(found.spread_ci95, 0.2));
+  CHECK(in_interval(found.spread_ci95, 0.2));
   CHECK(found.spread_ci95.high < 0.35);
 }
 

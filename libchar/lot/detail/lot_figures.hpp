@@ -2,35 +2,24 @@
 // Mean and spread of a quantity over the members of a lot. Coefficients are compared as logarithms.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/interval.hpp"
-#include "libchar/core/lognormal_effects.hpp"
 #include "libchar/core/random_effects.hpp"
+#include "libchar/lot/detail/lognormal_effects.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
 
-/// In the unit of the values: exp of the logarithms for coefficients.
-struct LotFigures {
-  double mean = 0;
-  Interval mean_ci95;
-  double spread =
-      0;  ///< of coefficients relative (standard deviation of the logarithm), of others in their unit
-  Interval spread_ci95;
-};
+/// At least two, and two thirds of all: what was not detected is smaller than what was.
+inline bool enough_count(std::size_t counted, std::size_t members) {
+  return counted >= 2 && 3 * counted >= 2 * members;
+}
 
-/// Of the values, where LotFigures is of their logarithms.
-struct ArithmeticFigures {
-  double mean = 0;
-  Interval mean_ci95;
-  double sd = 0;  ///< of the devices
-  Interval sd_ci95;
-};
-
-/// Of the members that count; none for fewer than two, or under two thirds of all: what was not detected is smaller than what was.
+/// Of the members that count; none where they are not enough.
 std::optional<RandomEffects> lot_effects(std::span<const double> value,
                                          std::span<const double> variance,
                                          std::size_t members);
@@ -57,6 +46,7 @@ std::optional<SquareInAll> square_in_lot(const Coefficient& found);
 /// The squares of a term over the members of a lot, one a member.
 struct LotSquares {
   std::vector<double> square, sd, skewness, samples;
+  std::vector<std::uint32_t> member;  ///< of the group
 };
 
 /// Of all members, also those that are not detected or doubtful, where they are more than those that count, and a third of all members counts.
@@ -65,7 +55,6 @@ std::optional<LognormalEffects> effects_of_all(const LotSquares& squares,
                                                std::size_t members);
 
 LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms);
-LotFigures lot_figures(const LognormalEffects& effects);
 
 /// Of logarithms whose effects these are, without a belief in their distribution but for the interval of the standard deviation.
 ArithmeticFigures arithmetic_figures(std::span<const double> logarithm,

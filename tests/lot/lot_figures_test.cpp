@@ -1,6 +1,6 @@
 // Means over many fits: what each does not show.
 
-#include "libchar/characterize/lot_figures.hpp"
+#include "libchar/lot/detail/lot_figures.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

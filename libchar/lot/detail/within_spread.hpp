@@ -6,9 +6,9 @@
 #include <span>
 
 #include "libchar/core/chi_square.hpp"
-#include "libchar/core/detail/weighted.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/weighted.hpp"
 
 namespace libchar {
 
