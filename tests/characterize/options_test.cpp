@@ -1,4 +1,5 @@
-// Every option of the analysis below and above the memory allowed: it changes the answer alike, or is refused with what would do.
+// Every option of the analysis below and above the memory allowed: it changes the answer alike, or
+// is refused with what would do.
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -17,8 +17,8 @@ namespace {
 constexpr std::uint64_t kPerMean = 512;
 constexpr double kRateHz = 1000;
 
-/// sqrt(512) times means of 512 samples of white noise of deviation 1 and of a walk: of the walk the increments of the means' spacing, and
-/// what the mean over the spacing adds to them.
+/// sqrt(512) times means of 512 samples of white noise of deviation 1 and of a walk: of the walk
+/// the increments of the means' spacing, and what the mean over the spacing adds to them.
 std::vector<double> white_walk_means(std::size_t n, double walk_step, unsigned seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
@@ -49,7 +49,8 @@ std::vector<PowerBin> series_bins(const std::vector<double>& means) {
   return bins_of(powers);
 }
 
-/// Sum of squares of the bins' relative distances from what they should be, in their standard deviations; the largest bins.
+/// Sum of squares of the bins' relative distances from what they should be, in their standard
+/// deviations; the largest bins.
 struct Distance {
   double chi2 = 0, bins = 0;
 };

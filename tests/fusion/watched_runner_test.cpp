@@ -1,4 +1,5 @@
-// The fault detector in front of estimates with fixed weights: sensors that fail are left out, and nothing else changes.
+// The fault detector in front of estimates with fixed weights: sensors that fail are left out, and
+// nothing else changes.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Fusion algorithms: against themselves where an input has to change the estimates in a known way, weights against long double, else
-// what every estimate must be.
+// Fusion algorithms: against themselves where an input has to change the estimates in a known way,
+// weights against long double, else what every estimate must be.
 #include <fmt/format.h>
 
 #include <algorithm>
