@@ -37,9 +37,10 @@ class Scope:
     statements: list = dataclasses.field(default_factory=list)  # text and line; bodies and values in braces are {}
 
     def walk(self, within=()):
+        """Every scope with those that it is in, outermost first."""
         yield within, self
         for scope in self.scopes:
-            yield from scope.walk((*within, self.name) if self.name else within)
+            yield from scope.walk((*within, self))
 
 
 CLASS = re.compile(r"^(?:class|struct|union)\b(?:\s*\[\[.*?\]\])?\s*(?P<name>[\w:]*)[^=()]*$", re.S)
@@ -163,6 +164,7 @@ def members_of(statement):
     """Data members that a statement of a class declares; static ones are no state."""
     text = without_angles(without_template(statement))
     text = re.sub(r"\[\[.*?\]\]|\balignas\([^()]*\)|\bdecltype\([^()]*\)", "", text).strip()
+    text = re.sub(r"^enum [\w :]*\{\} (?=\w)", "int ", text)  # enum Kind {…} kind
     if not text or NO_MEMBER.match(text):
         return 0
     text = re.sub(r"\(\s*\*\s*(\w+)\s*\)\s*\([^()]*\)", r" \1", text)  # a pointer to a function
