@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "tests/fusion/scenes.hpp"
 #include "tests/fusion/vectors.hpp"

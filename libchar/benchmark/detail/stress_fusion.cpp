@@ -9,6 +9,7 @@
 #include "libchar/benchmark/detail/stress_arrays.hpp"
 #include "libchar/benchmark/detail/stress_cells.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 
 namespace libchar {

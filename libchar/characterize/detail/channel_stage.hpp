@@ -10,6 +10,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/detail/leaf.hpp"
+#include "libchar/fit/allan_fit.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/fit/spike_cleaner.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
