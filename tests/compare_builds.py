@@ -176,8 +176,8 @@ def differences(a, b):
         elif a[part] != b[part] and differs_in_last_digits(a[part], b[part]):
             yield part, "~", "last digits of numbers"
         elif a[part] != b[part]:
-            yield from ((part, sign, line) for sign,
-                        line in different_lines(a[part].splitlines(), b[part].splitlines()))
+            yield from ((part, sign, line)
+                        for sign, line in different_lines(a[part].splitlines(), b[part].splitlines()))
 
 
 class Listed:

@@ -87,8 +87,8 @@ def prepare(folder):
     for k in range(4):
         (folder / f"part{k}.csv").write_text("\n".join(first + rows[12000 * k:12000 * (k + 1)]) + "\n")
     dirty = rows[:3000] + rows[3200:9000] + rows[8990:20000]
-    (folder / "dirty.csv").write_text("\n".join([first[-1]] + [line if k % 997 else line.split(",")[0] + ",," for k,
-                                                               line in enumerate(dirty)]) + "\n")
+    (folder / "dirty.csv").write_text("\n".join([first[-1]] + [line if k % 997 else line.split(",")[0] + ",,"
+                                                               for k, line in enumerate(dirty)]) + "\n")
     with open(folder / "warm.csv", "w") as warm:
         warm.write("t[s],gyro[deg/s],temp[degC]\n")
         for k in range(20000):

@@ -261,8 +261,8 @@ class Others(unittest.TestCase):
         with Device() as device:
             tree = ast.parse(device.export("gnss-ins-sim"))
         dictionary = next(node.value for node in tree.body if isinstance(node, ast.Assign))
-        values = {key.value: [ast.literal_eval(item) for item in call.args[0].elts] for key,
-                  call in zip(dictionary.keys, dictionary.values)}
+        values = {key.value: [ast.literal_eval(item) for item in call.args[0].elts]
+                  for key, call in zip(dictionary.keys, dictionary.values)}
         # of its constructor
         required = {"gyro_b", "gyro_b_stability", "gyro_arw", "accel_b", "accel_b_stability", "accel_vrw"}
         self.assertTrue(required <= set(values))
@@ -296,8 +296,8 @@ class Others(unittest.TestCase):
     def test_navego(self):
         with Device() as device:
             text = device.export("navego")
-        values = {key: [float(v) for v in row.split()] for key,
-                  row in re.findall(r"^imu\.(\w+) = \[(.*?)\];", text, re.M)}
+        values = {key: [float(v) for v in row.split()]
+                  for key, row in re.findall(r"^imu\.(\w+) = \[(.*?)\];", text, re.M)}
         self.assertEqual(set(values), {"arw", "vrw", "arrw", "vrrw", "gb_sta", "gb_dyn", "gb_corr", "ab_sta",
                                        "ab_dyn", "ab_corr"})
         self.assertAlmostEqual(values["ab_dyn"][1] * 1e-3 * 9.80665 / (ACCEL[2] * math.sqrt(36000)), 1, delta=1e-8)

@@ -143,8 +143,8 @@ class Bench:
             return None, {}
         counts = {}
         if log.exists():
-            counts = {name: int(count) for name,
-                      count in (line.split() for line in log.read_text().splitlines() if len(line.split()) == 2)}
+            rows = [line.split() for line in log.read_text().splitlines()]
+            counts = {row[0]: int(row[1]) for row in rows if len(row) == 2}
             log.unlink()
         return ran, counts
 
@@ -341,7 +341,7 @@ class Verb:
             next_run, _ = self.bench.run(again, self.words)
             if next_run is None or next_run.returncode != 0:
                 ended = f"{next_run and next_run.returncode}: {next_run and next_run.stderr.decode()[:200]}"
-            return f"the next run ends with {ended}", state
+                return f"the next run ends with {ended}", state
             after = self.state(again)
             if after != "new" and self.new != self.old:
                 return f"the next run leaves {after}: {sorted(set(files_of(again)) - set(self.new))}", state

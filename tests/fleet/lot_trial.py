@@ -57,8 +57,8 @@ def held(quantity, mean, spread, lognormal):
     }
     if lognormal:
         of = {"mean": (quantity["mean_ci95"], mean), "spread": (quantity["spread_ci95"], spread), **of}
-    return {what: interval is not None and interval[0] <= truth <= interval[1] for what,
-            (interval, truth) in of.items()}
+    return {what: interval is not None and interval[0] <= truth <= interval[1]
+            for what, (interval, truth) in of.items()}
 
 
 def main():
