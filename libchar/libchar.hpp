@@ -1,6 +1,6 @@
 #pragma once
-// The front door: what the program does with one log or one scene, as functions. docs/library.md walks through it and names the
-// headers of the rest.
+// The front door: what the program does with one log or one scene, as functions. docs/library.md
+// walks through it and names the headers of the rest.
 //
 //   inspect        what a log holds                          log/inspection.hpp
 //   characterize   curves, noise model and checks of a log   characterize/characterization.hpp

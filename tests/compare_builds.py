@@ -1,198 +1,131 @@
-"""Runs every verb of two builds of the program on every fixture and shipped scene and compares what they print, write and return.
+"""Runs every verb of two builds on every fixture and shipped scene and compares what they print, write and return.
 
-usage: compare_builds.py OLD NEW [--quick] [--only WORD] [--listed FILE]
-Runs both programs in folders that look alike, masks what is measured or names the build (run times, memory, the version's commit), and
-prints a line for each run that differs, with the first differing lines. FILE lists differences that are meant, a line each:
-`PATTERN<tab>reason`; PATTERN is a regular expression searched in "RUN: FILE: -old line / +new line". Ends with 1 when a difference is
-not listed. --quick leaves out replays of whole scenes.
+usage: compare_builds.py OLD [NEW] [--python OLD_DIR NEW_DIR] [--keep DIR] [--quick] [--only EXPRESSION]
+       [--listed FILE] [--lines N]
+OLD is a program, or the folder of an earlier --keep: outputs that are compared as they were, without the
+program. --keep DIR writes the outputs of OLD into that folder; without NEW that is all. --python has a folder
+for each program given, that of its module (PYTHONPATH). Both sides run in folders that look alike; masks
+(builds/masks.py) take out what is measured or names the build. Prints the differing lines of each run. FILE
+lists differences that are meant, one per line: `PATTERN<tab>reason`; PATTERN is a regular expression searched
+in "RUN: FILE: -old line / +new line". Exit code 1: a difference is not listed. --quick leaves out replays of
+whole scenes.
 """
 import argparse
 import difflib
+import json
 import os
 import pathlib
 import re
 import shutil
+import sqlite3
 import subprocess
 import sys
 import tempfile
+import zipfile
+import zlib
+
+from builds.masks import NUMBER, masked
+from builds.runs import FILES, Run, all_runs
 
 root = pathlib.Path(__file__).resolve().parent.parent
-arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-arguments.add_argument("old")
-arguments.add_argument("new")
-arguments.add_argument("--quick", action="store_true")
-arguments.add_argument("--only", default="", help="only runs whose name holds this")
-arguments.add_argument("--listed", default=str(root / "tests/listed_differences.txt"))
-options = arguments.parse_args()
-
-MASKS = [
-    (re.compile(r'"(seconds|ns_per_sample|ns_per_sample_ci95|peak_bytes|bytes_per_second|own_bytes|resident_bytes|learning_s|run_s)": *(\[[^\]]*\]|[^,}\n]*)'), r'"\1": MASKED'),
-    (re.compile(r'"build": *"[^"]*"'), '"build": MASKED'),
-    (re.compile(r"^(sensorchar \S+) \(.*\)$", re.M), r"\1"),
-    (re.compile(r'("[a-z]+\.(html|md)"): *"[0-9a-f]{64}"'), r"\1: MASKED"),  # of a page that says when it was made and by which build
-    (re.compile(r'"measured": *\{[^{}]*\}', re.S), '"measured": MASKED'),
-    (re.compile(r"^[WE]\d{8} [\d:.]+ +\d+ ", re.M), "W "),  # a warning of Ceres: time and thread
-]
-# Replays measure time and memory, and show them in many ways.
-REPLAY_MASKS = [
-    (re.compile(r"\b[\d.]+ (ns|µs|ms|s)\b"), "# s"),
-    (re.compile(r"\b[\d.]+ (B|kB|MB|GB)\b"), "# B"),
-    (re.compile(r'data-value="[^"]*">[^<]*'), 'data-value="">#'),  # report.json has the same numbers
-    (re.compile(r"(%|-|x) +[\d.e+]+ +# (B|kB|MB|GB) *\*? *"), r"\1 # # "),
-    (re.compile(r"Of these \S+ is the cheapest"), "Of these # is the cheapest"),
-    (re.compile(r"fronts?: [a-z, ]*"), "fronts: "),
-    (re.compile(r'("pareto_front"|"front[a-z_]*"): *(\{[^{}]*\}|\[[^\[\]]*\]|\w+)'), r"\1: MASKED"),
-]
+CASES = root / "tests/builds/python_cases.py"
+LAST_DIGITS = 2e-13  # the probability of a chi-square far out in its tail has chi2/2 times the rounding of chi2
+LONG = 4000  # lines: longer texts are compared line by line, as a search for what moved takes the square of that
+MOST_SECONDS = 900
 
 
-def runs():
-    """name, words, files that must exist beforehand (produced by an earlier run of the same program)."""
-    yield "version", ["--version"]
-    yield "help", ["--help"]
-    verbs = ["inspect", "characterize", "allan", "psd", "fit", "model", "simulate", "replay", "fuse", "compare", "convert"]
-    for verb in verbs:
-        yield f"help {verb}", [verb, "--help"]
-        yield f"nothing {verb}", [verb]
-        yield f"unknown option {verb}", [verb, "--no-such-option", "x"]
-    yield "unknown verb", ["characterise"]
-    imu = "fixtures/imu_at_rest.csv"
-    yield "allan", ["allan", imu]
-    for kind in ["adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"]:
-        yield f"allan {kind}", ["allan", imu, "-c", "gyro_z", "--type", kind, "--json"]
-    yield "allan dense", ["allan", imu, "-c", "accel_z", "--taus", "dense"]
-    yield "allan bad type", ["allan", imu, "--type", "odev"]
-    for scaling in ["psd", "ps", "lsd", "ls"]:
-        yield f"psd {scaling}", ["psd", imu, "--scaling", scaling]
-    yield "psd two", ["psd", imu, "--sides", "two", "--json"]
-    yield "psd segment", ["psd", imu, "--segment", "4096", "--window", "blackman_harris", "-c", "gyro_z"]
-    yield "psd lines", ["psd", imu, "--lines"]
-    yield "psd bins", ["psd", imu, "--log-bins", "30", "--json", "--lines"]
-    yield "fit", ["fit", imu]
-    yield "fit json", ["fit", imu, "--json"]
-    yield "fit terms", ["fit", imu, "--terms", "white_noise,bias_instability,random_walk,rate_ramp", "-c", "gyro_z"]
-    yield "fit Allan curve", ["fit", "curve.csv", "--curve", "allan", "--duration", "600", "--json"]
-    yield "fit spectrum", ["fit", "curve.csv", "--curve", "psd", "--quantity", "root"]
-    yield "inspect", ["inspect", imu]
-    yield "inspect json", ["inspect", imu, "--json"]
-    for npy in sorted((root / "fixtures/npy").glob("*.npy")):
-        name = f"fixtures/npy/{npy.name}"
-        yield f"inspect {npy.name}", ["inspect", name]
-        yield f"inspect json {npy.name}", ["inspect", name, "--json", "--rate", "100"]
-        yield f"convert {npy.name}", ["convert", name, "--rate", "100", "-o", f"{npy.stem}.csv"]
-        yield f"convert raw {npy.name}", ["convert", name, "--rate", "100", "-o", f"{npy.stem}.f64"]
-    yield "convert npy", ["convert", imu, "-o", "imu.npy"]
-    yield "convert raw", ["convert", imu, "-o", "imu.f64"]
-    yield "convert csv", ["convert", imu, "-o", "imu.csv"]
-    yield "convert window", ["convert", imu, "--from", "10s", "--to", "20s", "-c", "gyro_z", "-o", "window.csv"]
-    yield "convert later", ["convert", imu, "--from", "20s", "--to", "30s", "-o", "later.csv"]
-    yield "inspect raw", ["inspect", "imu.f64"]
-    yield "characterize", ["characterize", imu, "-o", "report", "--force"]
-    yield "characterize json", ["characterize", imu, "-o", "report2", "--json", "--verify"]
-    yield "characterize options", ["characterize", imu, "-o", "report3", "--segment", "2048", "--window", "flat_top", "--sides", "two",
-                                   "--scaling", "lsd", "--terms", "white_noise,bias_instability", "--no-remedies", "--no-second-opinion", "--taus", "decade"]
-    yield "characterize streamed", ["characterize", imu, "-o", "report4", "--memory", "64k"]
-    yield "characterize limits", ["characterize", imu, "-o", "judged", "--limits", "limits.yaml"]
-    yield "characterize pool", ["characterize", "window.csv", "later.csv", "-o", "pooled", "--pool"]
-    yield "characterize lot", ["characterize", "window.csv", "later.csv", imu, "-o", "lot", "--lot"]
-    yield "compare characterizations", ["compare", "report", "judged"]
-    yield "compare characterizations json", ["compare", "report", "judged", "--json"]
-    yield "characterize again", ["characterize", imu, "-o", "report"]
-    yield "model", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml"]
-    yield "model json", ["model", "report/gyro_z.sensor.yaml", "--json"]
-    yield "model list", ["model", "--list"]
-    targets = "kalibr euroc openvins orbslam3 basalt vins gtsam ros sdf rotors airsim gnss-ins-sim gnss_ins_sim pegasus kf-gins navego matlab px4 json".split()
-    for target in targets:
-        yield f"export {target}", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target]
-        yield f"export {target} rms", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target, "--axes", "rms",
-                                       "--inflate", "2", "-o", f"{target}.out"]
-        yield f"export {target} older", ["model", "report/gyro_z.sensor.yaml", "report/accel_z.sensor.yaml", "--to", target, "--older"]
-        yield f"export {target} gyro", ["model", "report/gyro_z.sensor.yaml", "--to", target, "--topic", "/imu7"]
-    yield "simulate", ["simulate", "report/gyro_z.sensor.yaml", "--devices", "3", "--duration", "2min", "--truth", "sine,amplitude=5,frequency_hz=0.01",
-                       "--fault", "gyro_z2:bias=0.3@20..60", "-o", "array.csv"]
-    yield "simulate npy", ["simulate", "report/gyro_z.sensor.yaml", "--duration", "10min", "--seed", "7", "-o", "one.npy"]
-    yield "replay simulated", ["replay", "array.scene.yaml", "-o", "array-replay", "--quiet"]
-    yield "replay explain simulated", ["replay", "array.scene.yaml", "--explain"]
-    yield "fuse", ["fuse", "array.csv", "--with", "array-replay", "-o", "fused.csv"]
-    yield "fuse json", ["fuse", "array.csv", "--with", "array-replay", "-o", "fused.f64", "--algorithm", "mean", "--json"]
-    yield "compare", ["compare", "compared", "compared"]
-    yield "replay list", ["replay", "--list"]
-    yield "replay list json", ["replay", "--list", "--json"]
-    scenes = sorted(p.relative_to(root).as_posix() for p in (root / "fixtures/scenes").rglob("*.yaml"))
-    for scene in scenes:
-        yield f"explain {scene}", ["replay", scene, "--explain", "--allow-outside"]
-        yield f"explain json {scene}", ["replay", scene, "--explain", "--json", "--allow-outside"]
-        if not options.quick:
-            yield f"replay {scene}", ["replay", scene, "--allow-outside", "-o", f"replay-{pathlib.Path(scene).stem}", "--quiet",
-                                      "--estimates", f"{pathlib.Path(scene).stem}-estimates.csv"]
-    for folder in ["csv", "npy", "raw", "json"]:
-        for bad in sorted((root / "fixtures/known/badinputs" / folder).iterdir()):
-            name = f"fixtures/known/badinputs/{folder}/{bad.name}"
-            yield f"bad inspect {folder}/{bad.name}", ["inspect", name]
-            yield f"bad fit {folder}/{bad.name}", ["fit", name, "--json"]
-            yield f"bad allan {folder}/{bad.name}", ["allan", name, "--rate", "10"]
-            if folder == "json":
-                yield f"bad model {folder}/{bad.name}", ["model", name]
-                yield f"bad replay {folder}/{bad.name}", ["replay", name, "--explain"]
-    shared = root.parent / "shared"
-    for log in sorted((shared / "data").glob("*.csv")) + sorted((shared / "data").glob("*.npy")):
-        if log.stat().st_size < 60e6:
-            yield f"data inspect {log.name}", ["inspect", f"../shared/data/{log.name}", "--json"]
-            if not options.quick:
-                yield f"data fit {log.name}", ["fit", f"../shared/data/{log.name}", "--rate", "100", "--json"]
+class Kept:
+    """Outputs of one program in a file: texts by run, masked with today's masks and again with those of the
+    day they are read."""
+
+    def __init__(self, folder, new=False):
+        folder = pathlib.Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / "outputs.sqlite"
+        if new:
+            path.unlink(missing_ok=True)
+        elif not path.exists():
+            sys.exit(f"compare_builds.py: {folder} is no program, and no folder of outputs that were kept")
+        self.base = sqlite3.connect(path)
+        self.base.execute("CREATE TABLE IF NOT EXISTS outputs (run TEXT PRIMARY KEY, words TEXT, found BLOB)")
+
+    def write(self, run, found):
+        row = run.name, json.dumps(run.words), zlib.compress(json.dumps(found).encode())
+        self.base.execute("INSERT OR REPLACE INTO outputs VALUES (?, ?, ?)", row)
+        self.base.commit()
+
+    def run(self, run):
+        """None: that run was not kept, or it was of other words."""
+        row = self.base.execute("SELECT words, found FROM outputs WHERE run = ?", (run.name,)).fetchone()
+        if not row or json.loads(row[0]) != run.words:
+            return None
+        found = json.loads(zlib.decompress(row[1]))
+        return {part: text if part == "exit code" else masked(text, run) for part, text in found.items()}
 
 
-def masked(data, replay):
-    text = data.decode("utf-8", "surrogateescape")
-    for pattern, to in MASKS + (REPLAY_MASKS if replay else []):
-        text = pattern.sub(to, text)
-    return text
-
-
-LIMITS = """format: noise-limits
-version: 1
-sensor: a made-up sheet
-limits:
-  - kind: angular_rate
-    white_noise: {value: 2, unit: deg/√h}
-    bias_instability: {value: 25, unit: deg/h}
-  - channels: [accel_z]
-    white_noise: {value: 0.001, unit: mg/√Hz}
-"""
-CURVE = "x,y\n" + "".join(f"{0.1 * 1.5 ** k!r},{0.02 / (1.5 ** (k / 2)) + 0.001!r}\n" for k in range(20))
+def contents(path):
+    """Bytes of a file; of an archive of arrays those of its members, texts in it in a byte per letter."""
+    if path.suffix != ".npz":
+        return path.read_bytes()
+    with zipfile.ZipFile(path) as archive:
+        return b"".join(f"\n{name}: ".encode() + archive.read(name).replace(b"\0\0\0", b"")
+                        for name in archive.namelist())
 
 
 class Side:
     """One program with a folder in which relative paths are the same as on the other side."""
 
-    def __init__(self, program, work):
-        self.program, self.folder = os.path.abspath(program), work / "main"
+    def __init__(self, program, module, work):
+        self.folder = work / "main"
         self.folder.mkdir(parents=True)
         shutil.copytree(root / "fixtures", self.folder / "fixtures")
         if (root.parent / "shared").is_dir():
             (work / "shared").symlink_to(root.parent / "shared")
-        (self.folder / "limits.yaml").write_text(LIMITS)
-        (self.folder / "curve.csv").write_text(CURVE)
+        for name, text in FILES.items():
+            (self.folder / name).write_text(text)
         (self.folder / "bin").mkdir()
-        (self.folder / "bin/sensorchar").symlink_to(self.program)
+        (self.folder / "bin/sensorchar").symlink_to(os.path.abspath(program))
+        quiet = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "NO_COLOR", "PYTHONPATH")}
+        self.environment = quiet | {"LC_ALL": "C.UTF-8", "PYTHONPATH": os.path.abspath(module) if module else ""}
+        self.units = {}
         self.seen = self.stamps()
 
     def stamps(self):
         return {p: p.stat().st_mtime_ns for p in self.folder.rglob("*") if p.is_file()}
 
-    def run(self, words):
-        replay = words[0] in ("replay", "compare")
-        ran = subprocess.run(["bin/sensorchar", *words], cwd=self.folder, capture_output=True, stdin=subprocess.DEVNULL)
-        found = {"exit code": str(ran.returncode), "stdout": masked(ran.stdout, replay), "stderr": masked(ran.stderr, replay)}
+    def plain(self, text):
+        """Without the folder's own path, units of fleets by number: their names are digests of settings and version."""
+        text = text.replace(str(self.folder), "FOLDER")
+        for name, number in self.units.items():
+            text = text.replace(name, number).replace(f"{name[:2]}/{name[2:]}", number)
+        return text
+
+    def learn_units(self):
+        for plan in sorted(self.folder.glob("*/plan.jsonl")):
+            for name in re.findall(r'"(?:id|unit)": *"([0-9a-f]{16,64})"', plan.read_text()):
+                self.units.setdefault(name, f"UNIT{len(self.units)}")
+
+    def run(self, run):
+        command = [sys.executable, CASES, run.words[1]] if run.words[0] == "python" else ["bin/sensorchar", *run.words]
+        try:
+            ran = subprocess.run(command, cwd=self.folder, capture_output=True, stdin=subprocess.DEVNULL,
+                                 env=self.environment,
+                                 timeout=MOST_SECONDS)
+        except subprocess.TimeoutExpired:
+            return {"exit code": f"none after {MOST_SECONDS} s"}
+        if run.words[:2] == ["fleet", "plan"]:
+            self.learn_units()
+
+        def text_of(data):
+            return masked(self.plain(data.decode("utf-8", "surrogateescape")), run)
+
+        found = {"exit code": str(ran.returncode), "stdout": text_of(ran.stdout), "stderr": text_of(ran.stderr)}
         now = self.stamps()
         for path in sorted(now):
             if self.seen.get(path) != now[path]:
-                found[path.relative_to(self.folder).as_posix()] = masked(path.read_bytes(), replay)
+                found[self.plain(path.relative_to(self.folder).as_posix())] = text_of(contents(path))
         self.seen = now
         return found
-
-
-NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
-LAST_DIGITS = 2e-13  # the probability of a chi-square far out in its tail has chi2/2 times the rounding of chi2
 
 
 def differs_in_last_digits(a, b):
@@ -203,16 +136,37 @@ def differs_in_last_digits(a, b):
     return all(x == y or abs(float(x) - float(y)) <= LAST_DIGITS * max(abs(float(x)), abs(float(y))) for x, y in pairs)
 
 
+def around(line, other, width=300):
+    """The part of a long line that differs."""
+    if len(line) <= width:
+        return line
+    at = next((k for k, (x, y) in enumerate(zip(line, other)) if x != y), min(len(line), len(other)))
+    begin = max(0, min(at - 80, len(line) - width))
+    return ("…" if begin else "") + line[begin:begin + width]
+
+
+def opcodes(a, b):
+    if max(len(a), len(b)) <= LONG:
+        return difflib.SequenceMatcher(None, a, b, autojunk=False).get_opcodes()
+    same = min(len(a), len(b))
+    return [("replace", k, k + 1, k, k + 1) for k in range(same)
+            if a[k] != b[k]] + [("replace", same, len(a), same, len(b))]
+
+
 def different_lines(a, b):
-    for kind, a_from, a_to, b_from, b_to in difflib.SequenceMatcher(None, a, b, autojunk=False).get_opcodes():
+    for kind, a_from, a_to, b_from, b_to in opcodes(a, b):
         if kind == "equal":
             continue
-        pairs = list(zip(a[a_from:a_to], b[b_from:b_to])) if a_to - a_from == b_to - b_from else []
-        close = [differs_in_last_digits(*pair) for pair in pairs]
-        if any(close):
-            yield "~", "last digits of numbers"
-        yield from (("-", line) for k, line in enumerate(a[a_from:a_to]) if not (close and close[k]))
-        yield from (("+", line) for k, line in enumerate(b[b_from:b_to]) if not (close and close[k]))
+        if a_to - a_from != b_to - b_from:
+            yield from (("-", line[:300]) for line in a[a_from:a_to])
+            yield from (("+", line[:300]) for line in b[b_from:b_to])
+            continue
+        for old, new in zip(a[a_from:a_to], b[b_from:b_to]):
+            if differs_in_last_digits(old, new):
+                yield "~", "last digits of numbers"
+            else:
+                yield "-", around(old, new)
+                yield "+", around(new, old)
 
 
 def differences(a, b):
@@ -222,48 +176,108 @@ def differences(a, b):
         elif a[part] != b[part] and differs_in_last_digits(a[part], b[part]):
             yield part, "~", "last digits of numbers"
         elif a[part] != b[part]:
-            yield from ((part, sign, line) for sign, line in different_lines(a[part].splitlines(), b[part].splitlines()))
+            yield from ((part, sign, line)
+                        for sign, line in different_lines(a[part].splitlines(), b[part].splitlines()))
 
 
-listed = []
-if pathlib.Path(options.listed).exists():
-    for line in pathlib.Path(options.listed).read_text().splitlines():
-        if line and not line.startswith("#"):
-            pattern, _, reason = line.partition("\t")
-            listed.append([re.compile(pattern), reason, 0])
+class Listed:
+    """Differences that are meant, and how many lines each met."""
 
-with tempfile.TemporaryDirectory() as folder:
-    work = pathlib.Path(folder)
-    (work / "old").mkdir(), (work / "new").mkdir()
-    old, new = Side(options.old, work / "old"), Side(options.new, work / "new")
-    count = same = 0
-    unlisted = []
-    for name, words in runs():
-        if options.only not in name:
+    def __init__(self, path):
+        self.rows = []
+        for line in pathlib.Path(path).read_text().splitlines() if path else []:
+            if line and not line.startswith("#"):
+                pattern, _, reason = line.partition("\t")
+                self.rows.append([re.compile(pattern), reason, 0])
+
+    def holds(self, text):
+        match = next((row for row in self.rows if row[0].search(text)), None)
+        if match:
+            match[2] += 1
+        return match is not None
+
+
+def wanted_runs(options, with_module):
+    for run in all_runs(root, options.quick):
+        if re.search(options.only, run.name):
+            yield run
+    if with_module:
+        cases = subprocess.run([sys.executable, CASES], capture_output=True, text=True, check=True).stdout.split()
+        yield from (Run(f"python {case}", ["python", case]) for case in cases
+                    if re.search(options.only, f"python {case}"))
+
+
+def report(run, strange, most):
+    print(f"DIFFERS {run.name} ({len(strange)} lines): {' '.join(run.words)}")
+    for text in strange[:most or None]:
+        print("   ", text)
+    sys.stdout.flush()
+
+
+def compare(options, old, new, kept, listed):
+    count = same = others = missing = 0
+    for run in wanted_runs(options, bool(options.python)):
+        before = old.run(run)
+        if kept:
+            kept.write(run, before)
+        if not new:
+            count += 1
+            continue
+        after = new.run(run)  # also where nothing was kept of it: later runs read what it writes
+        if before is None:
+            missing += 1
             continue
         count += 1
-        if name == "compare":  # of the same two reports
-            for side in (old, new):
-                shutil.copytree(old.folder / "array-replay", side.folder / "compared", dirs_exist_ok=True)
-                side.seen = side.stamps()
-        found = list(differences(old.run(words), new.run(words)))
+        found = list(differences(before, after))
         same += not found
-        strange = []
-        for part, sign, text in found:
-            row = f"{name}: {part}: {sign}{text[:300]}"
-            match = next((entry for entry in listed if entry[0].search(row)), None)
-            if match:
-                match[2] += 1
-            else:
-                strange.append(row)
+        strange = [f"{part}: {sign}{text}" for part, sign,
+                   text in found if not listed.holds(f"{run.name}: {part}: {sign}{text}")]
+        others += bool(strange)
         if strange:
-            unlisted.append(name)
-            print(f"DIFFERS {name} ({len(strange)} lines)")
-            for row in strange[:6]:
-                print("   ", row[:240])
-            sys.stdout.flush()
-print(f"{count} runs, {same} with the same bytes, {count - same - len(unlisted)} with listed differences only, {len(unlisted)} with others")
-for pattern, reason, hits in listed:
-    if hits or not (options.quick or options.only):
-        print(f"  listed, {hits} lines: {reason}" + ("" if hits else f" [{pattern.pattern} is met by nothing: drop it]"))
-sys.exit(bool(unlisted))
+            report(run, strange, options.lines)
+    if new:
+        print(f"{count} runs, {same} with the same bytes, {count - same - others} with listed differences only, "
+              f"{others} with others"
+              + (f"; {missing} were not kept" if missing else ""))
+    else:
+        print(f"{count} runs kept in {options.keep}")
+    for pattern, reason, hits in listed.rows:
+        if hits or not (options.quick or options.only):
+            print(f"  listed, {hits} lines: {reason}"
+                  + ("" if hits else f" [{pattern.pattern} is met by nothing: drop it]"))
+    return others
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("old")
+    arguments.add_argument("new", nargs="?")
+    arguments.add_argument("--python", nargs="+", default=[], metavar="DIR")
+    arguments.add_argument("--keep", metavar="DIR", help="write the outputs of OLD there")
+    arguments.add_argument("--quick", action="store_true")
+    arguments.add_argument("--only", default="",
+                           help="only runs in whose name this expression is found: name those too whose files they "
+                                "need")
+    arguments.add_argument("--listed", metavar="FILE")
+    arguments.add_argument("--lines", type=int, default=6, help="differing lines of a run that are printed (0: all)")
+    options = arguments.parse_args()
+    from_kept = pathlib.Path(options.old).is_dir()
+    programs = [p for p in (None if from_kept else options.old, options.new) if p]
+    if not options.new and (from_kept or not options.keep):
+        arguments.error("NEW is required, or a program and --keep")
+    if from_kept and options.keep:
+        arguments.error("--keep writes outputs of a program, and OLD is a folder of such")
+    if options.python and len(options.python) != len(programs):
+        arguments.error("--python has a folder for each program")
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        modules = options.python or [None] * len(programs)
+        sides = [Side(program, module, work / name) for program, module, name in zip(programs, modules, ("one", "two"))]
+        old = Kept(options.old) if from_kept else sides[0]
+        new = sides[-1] if options.new else None
+        kept = Kept(options.keep, new=True) if options.keep else None
+        sys.exit(bool(compare(options, old, new, kept, Listed(options.listed))))
+
+
+if __name__ == "__main__":
+    main()

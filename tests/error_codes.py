@@ -1,8 +1,8 @@
 """docs/errors.md against the sources: every code stands there once, with the exit code and the files that raise it.
 
 usage: error_codes.py ROOT [--write]
-The table's meaning is written by hand; --write brings its files up to date. A code that a second file wants to raise must fit the
-meaning that stands in the table: that is what the list of files is for.
+The table's meaning is written by hand; --write brings its files up to date. A code that a second file wants
+to raise must fit the meaning that stands in the table: that is what the list of files is for.
 """
 import collections
 import pathlib
@@ -45,7 +45,8 @@ for number, line in enumerate(lines, 1):
         faults.append(f"{page}:{number}: {code} is raised in {where}, not in {row[4]}: same meaning? then --write")
     lines[number - 1] = f"| {code} | {row[2]} | {row[3]} | {where} |"
     if kinds[code] and kinds[code] != rows[code][0]:
-        faults.append(f"{page}:{number}: {code} ends with exit codes {sorted(kinds[code])}, not {sorted(rows[code][0])}")
+        faults.append(f"{page}:{number}: {code} ends with exit codes {sorted(kinds[code])}, not "
+                      f"{sorted(rows[code][0])}")
 for folder in ("libchar", "tools"):
     for path in sorted((root / folder).rglob("*.cpp")):
         text = path.read_text()

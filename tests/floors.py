@@ -1,6 +1,7 @@
-"""Fails on any #include that looks up, and on any that looks into a folder inside another floor: the order of the floors lives here
-and nowhere else. A header directly in a floor is public and installed; one in a folder inside a floor belongs to that floor. So a
-header that nobody outside its floor gets to see (another floor, a verb, an example, the front door libchar.hpp) has to be in a folder."""
+"""Fails on any #include that looks up, and on any that looks into a folder inside another floor: the order of
+the floors lives here and nowhere else. A header directly in a floor is public and installed; one in a folder
+inside a floor belongs to that floor. So a header that nobody outside its floor gets to see (another floor, a
+verb, an example, the front door libchar.hpp) has to be in a folder."""
 import pathlib
 import re
 import sys
@@ -9,7 +10,8 @@ ORDER = {"core": 0, "log": 1, "allan": 1, "spectrum": 1, "fusion": 1, "model": 1
          "characterize": 3, "scene": 3, "lot": 4, "replay": 4, "benchmark": 5, "report": 6, "figure": 6, "fleet": 7}
 # Floors of one rank do not know each other.
 # Libraries that are kept to their floors.
-KEPT = {"fftw3.h": {"spectrum"}, "ceres/": {"fit", "fusion"}, "CLI/": set(), "cairo": {"figure"}, "fontconfig/": {"figure"}}
+KEPT = {"fftw3.h": {"spectrum"}, "ceres/": {"fit", "fusion"}, "CLI/": set(), "cairo": {"figure"},
+        "fontconfig/": {"figure"}}
 
 root = pathlib.Path(sys.argv[1])
 faults = []
@@ -36,7 +38,8 @@ def includes(path):
 
 public = {path.relative_to(root).as_posix() for path in (root / "libchar").glob("*/*.hpp")}
 seen = set()  # from outside, directly or through a public header
-wanted = set().union(*(includes(path) for folder in ("tools", "docs/examples") for path in (root / folder).rglob("*.[ch]pp")))
+wanted = set().union(*(includes(path) for folder in ("tools", "docs/examples")
+                       for path in (root / folder).rglob("*.[ch]pp")))
 for path in (root / "libchar").rglob("*.[ch]pp"):
     floor = path.relative_to(root / "libchar").parts[0]
     wanted |= {name for name in includes(path) if name.split("/")[1] != floor}

@@ -15,5 +15,6 @@ if not version or not re.search(r"version 14\.", version):
 sources = sorted(p for folder in ("libchar", "tools", "tests", "docs") for p in (root / folder).rglob("*.[ch]pp"))
 check = subprocess.run([program, "--dry-run", "-Werror", *map(str, sources)], capture_output=True, text=True)
 wrong = sorted({line.split(":")[0] for line in check.stderr.splitlines() if "clang-format-violations" in line})
-print("\n".join(f"{pathlib.Path(p).relative_to(root)}: clang-format -i" for p in wrong) or f"format: {len(sources)} sources as .clang-format has them")
+print("\n".join(f"{pathlib.Path(p).relative_to(root)}: clang-format -i" for p in wrong)
+      or f"format: {len(sources)} sources as .clang-format has them")
 sys.exit(bool(wrong or check.returncode))

@@ -1,7 +1,9 @@
-"""docs/library.md against docs/examples: every example stands in the page to the last character, and prints what the page shows.
+"""docs/library.md against docs/examples: every example stands in the page to the last character, and prints
+what the page shows.
 
 usage: library_page.py ROOT PROGRAM… [--write]
---write puts code and output into the page. In the page a line `<!-- NN_name.cpp -->` precedes the ```cpp block of an example, a ```text block directly behind it is its output.
+--write puts code and output into the page. In the page a line `<!-- NN_name.cpp -->` precedes the ```cpp
+block of an example, a ```text block directly behind it is its output.
 """
 import difflib
 import os

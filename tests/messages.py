@@ -1,8 +1,9 @@
 """Messages of the library speak of the library; tools/flag_names.cpp says them with flags.
 
 usage: messages.py ROOT
-A string in libchar/ names no flag ("--rate"). A word in backquotes that stands alone is an option or a function that flag_names.cpp
-has a flag for, or it is listed below as none. Every row of flag_names.cpp is used by a message, and its flag exists.
+A string in libchar/ names no flag ("--rate"). A word in backquotes that stands alone is an option or a
+function that flag_names.cpp has a flag for, or it is listed below as none. Every row of flag_names.cpp is
+used by a message, and its flag exists.
 """
 import pathlib
 import re
@@ -65,7 +66,8 @@ for path in sorted((root / "libchar").rglob("*.[ch]pp")):
         for word in WORD.findall(string):
             used.add(word)
             if word not in flags and word not in NO_FLAGS:
-                faults.append(f"{place}: `{word}` has no row in tools/flag_names.cpp and is not listed in tests/messages.py")
+                faults.append(f"{place}: `{word}` has no row in tools/flag_names.cpp and is not listed in "
+                              f"tests/messages.py")
 for option, flag in flags.items():
     if option not in used:
         faults.append(f"tools/flag_names.cpp: no message names `{option}`")
@@ -79,5 +81,6 @@ for word in sorted(NO_FLAGS):
     if word not in used or word in flags:
         faults.append(f"tests/messages.py: {word} need not be listed")
 
-print("\n".join(faults) or f"messages: {len(flags)} options with a flag, all used; no string of the library names a flag")
+print("\n".join(faults) or f"messages: {len(flags)} options with a flag, all used; no string of the library names a "
+                           f"flag")
 sys.exit(bool(faults))

@@ -1,9 +1,11 @@
-"""Fails on names that do not exist: in the pages (README.md, docs/) and in comments of the sources. usage: pages.py ROOT
+"""Fails on names that do not exist: in the pages (README.md, docs/) and in comments of the sources. usage:
+pages.py ROOT
 
-- a file in `backticks` or in a link is in the repository (a bare name like `power_bins.cpp` anywhere in it); NAME, TARGET, FLOOR and other
-  words in capitals stand for any name;
+- a file in `backticks` or in a link is in the repository (a bare name like `power_bins.cpp` anywhere in it);
+  NAME, TARGET, FLOOR and other words in capitals stand for any name;
 - a page that a comment names (docs/….md) is in the repository;
-- in docs/architecture.md and docs/contributing.md every `function()` or `Type` in a row of a table that names files stands in one of them.
+- in docs/architecture.md and docs/contributing.md every `function()` or `Type` in a row of a table that names
+  files stands in one of them.
 """
 import pathlib
 import re
@@ -11,9 +13,11 @@ import subprocess
 import sys
 
 root = pathlib.Path(sys.argv[1])
-listed = subprocess.run(["git", "-C", str(root), "ls-files", "--cached", "--others", "--exclude-standard"], capture_output=True, text=True)
+listed = subprocess.run(["git", "-C", str(root), "ls-files", "--cached", "--others", "--exclude-standard"],
+                        capture_output=True, text=True)
 files = listed.stdout.split("\n") if listed.returncode == 0 and listed.stdout else [
-    p.relative_to(root).as_posix() for p in root.rglob("*") if p.is_file() and not p.relative_to(root).parts[0].startswith("build")]
+    p.relative_to(root).as_posix() for p in root.rglob("*") if p.is_file()
+    and not p.relative_to(root).parts[0].startswith("build")]
 files = {f for f in files if f and (root / f).is_file()}
 folders = {parent.as_posix() for f in files for parent in pathlib.PurePosixPath(f).parents}
 names = {pathlib.PurePosixPath(f).name for f in files}
@@ -30,7 +34,8 @@ def alternatives(text):
     brace = re.search(r"\{([^{}]*)\}", text)
     if not brace:
         return [text]
-    return [one for part in brace[1].split(",") for one in alternatives(text[:brace.start()] + part + text[brace.end():])]
+    return [one for part in brace[1].split(",")
+            for one in alternatives(text[:brace.start()] + part + text[brace.end():])]
 
 
 def exists(name, page):
@@ -46,7 +51,8 @@ def exists(name, page):
     normal = pathlib.PurePosixPath(*[p for p in (here / clean).parts if p != "."])
     while ".." in normal.parts:
         at = normal.parts.index("..")
-        normal = pathlib.PurePosixPath(*normal.parts[:at - 1], *normal.parts[at + 1:]) if at else normal.relative_to("..")
+        normal = pathlib.PurePosixPath(*normal.parts[:at - 1],
+                                       *normal.parts[at + 1:]) if at else normal.relative_to("..")
     if normal.as_posix() in files | folders:
         return True
     # A path within libchar or a bare name.
@@ -97,7 +103,8 @@ for page in sorted(f for f in files if f.endswith(".md")):
     check_page(page)
 for page in ("docs/architecture.md", "docs/contributing.md"):
     check_rows(page)
-for source in sorted(f for f in files if f.endswith((".cpp", ".hpp", ".py", ".txt", ".cmake")) and f.startswith(("libchar/", "tools/", "tests/"))):
+for source in sorted(f for f in files if f.endswith((".cpp", ".hpp", ".py", ".txt", ".cmake"))
+                     and f.startswith(("libchar/", "tools/", "tests/"))):
     check_comments(source)
 print("\n".join(wrong) or f"pages: every file and name in {sum(f.endswith('.md') for f in files)} pages exists")
 sys.exit(bool(wrong))

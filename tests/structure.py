@@ -1,68 +1,198 @@
-"""Prints the shape of a checkout's C++: lengths of functions and files, files a folder, parameters, comments in public headers.
+"""Gates of the house: fails where a class, a folder, the names of libchar:: or a line grows beyond its limit,
+where libchar.hpp reaches Eigen, and where a question is answered outside of the function that owns its answer
+(gates/owners.py).
 
-usage: structure.py [ROOT]   (needs universal-ctags; run by hand, for closing notes)
+usage: structure.py ROOT [--lower] [--print]
+What is beyond a limit today is a row of gates/ceilings.tsv with a reason: it may shrink, never grow, and a
+row that is higher than need be fails too. --lower lowers the rows to what is there and drops those that are
+not needed. --print prints the shape of the code: lengths of functions and files, parameters, comments (needs
+universal-ctags).
 """
 import collections
-import json
+import dataclasses
 import pathlib
 import re
-import statistics
-import subprocess
 import sys
 
-root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from gates import cpp, shape  # noqa: E402
+from gates.owners import QUESTIONS  # noqa: E402
+
+CEILINGS = pathlib.Path(__file__).resolve().parent / "gates/ceilings.tsv"
+COLUMNS = 120
+LIMITS = {  # of one key of a gate, in what it counts
+    "members": (20, "data members of a class"),
+    "files": (24, "sources in a folder"),
+    "names": (300, "names directly in libchar::, in public headers"),
+    "eigen": (0, "includes of Eigen in a header that libchar/libchar.hpp reaches"),
+    "columns": (0, f"lines above {COLUMNS} columns"),
+    "owner": (0, "spellings outside of the owner's file"),
+}
 
 
-def spread(values):
-    values = sorted(values)
-    if not values:
-        return "-"
-    return f"{statistics.median(values):.0f} / {values[int(0.9 * (len(values) - 1))]} / {values[-1]}"
+class Tree:
+    """Sources below a folder: path relative to it → text."""
+
+    def __init__(self, root):
+        self.texts = {}
+        for folder in ("libchar", "tools", "tests"):
+            for path in sorted((root / folder).rglob("*")):
+                inside = path.relative_to(root)
+                made = any(part == "build" or part.startswith(("build-", "__py")) for part in inside.parts[:-1])
+                if path.suffix in (".cpp", ".hpp", ".py") and not made:
+                    self.texts[inside.as_posix()] = path.read_text(errors="replace")
+
+    def cpp(self, *folders):
+        return {path: text for path, text in self.texts.items()
+                if path.endswith((".cpp", ".hpp")) and path.split("/")[0] in folders}
 
 
-def functions_of(folder):
-    ctags = subprocess.run(
-        ["ctags", "--output-format=json", "--languages=C++", "--kinds-C++=f", "--fields=+neS", "-R", "--langmap=C++:.cpp.hpp", "-f", "-", str(folder)],
-        capture_output=True, text=True, check=True)
-    for line in ctags.stdout.splitlines():
-        tag = json.loads(line)
-        if "end" in tag:
-            yield tag
+@dataclasses.dataclass
+class Count:
+    number: int = 0
+    places: list = dataclasses.field(default_factory=list)
+
+    def add(self, place, number=1):
+        self.number += number
+        self.places.append(place)
 
 
-def parameters(signature):
-    depth = 0
-    inside = signature.strip()[1:-1].strip()
-    if not inside or inside == "void":
-        return 0
-    count = 1
-    for character in inside:
-        depth += character in "(<[{"
-        depth -= character in ")>]}"
-        count += character == "," and depth == 0
-    return count
+def floor_of(path):
+    """libchar/fit, tools, tests/report: where a row belongs that must outlive the moving of files."""
+    parts = pathlib.PurePosixPath(path).parts
+    return "/".join(parts[:2]) if len(parts) > 2 else parts[0]
 
 
-for name in ("libchar", "tools"):
-    folder = root / name
-    sources = [p for p in folder.rglob("*.[ch]pp")]
-    functions = list(functions_of(folder))
-    lengths = [tag["end"] - tag["line"] + 1 for tag in functions]
-    print(f"{name}: {len(sources)} files, {sum(len(p.read_text().splitlines()) for p in sources)} lines")
-    print(f"  function lines, median / p90 / longest     {spread(lengths)} of {len(lengths)}")
-    for tag in sorted(functions, key=lambda t: t["line"] - t["end"]):
-        if tag["end"] - tag["line"] + 1 > 60:
-            print(f"    above 60: {tag['end'] - tag['line'] + 1} {tag['path']}:{tag['line']} {tag['name']}")
-    print(f"  file lines, median / p90 / longest         {spread([len(p.read_text().splitlines()) for p in sources])}")
-    per_folder = collections.Counter(p.parent for p in sources)
-    print(f"  files a folder, median / p90 / largest     {spread(per_folder.values())}")
-    print(f"  parameters, median / p90 / most            {spread([parameters(t.get('signature', '()')) for t in functions])}")
-    comment = code = 0
-    public = [p for p in folder.glob("*/*.hpp")] + [p for p in folder.glob("*.hpp")]
-    for path in public:
-        for line in path.read_text().splitlines():
-            comment += bool(re.search(r"//", line))
-            code += bool(re.sub(r"//.*", "", line).strip())
-    print(f"  public headers: {len(public)}, comment lines per code line {comment / max(code, 1):.2f}")
-    with_header = sum(p.with_suffix(".hpp").exists() for p in sources if p.suffix == ".cpp")
-    print(f"  sources with a header of their name        {with_header} of {sum(p.suffix == '.cpp' for p in sources)}")
+def gate_members(tree, counts):
+    for path, text in tree.cpp("libchar", "tools").items():
+        for within, scope in cpp.parse(text).walk():
+            if scope.kind == "class":
+                name = "::".join(s.name for s in (*within, scope) if s.kind == "class")
+                number = sum(cpp.members_of(statement) for statement, _ in scope.statements)
+                counts["members", f"{floor_of(path)} {name}"].add(f"{path}:{scope.line}", number)
+
+
+def gate_files(tree, counts):
+    for path in tree.cpp("libchar", "tools"):
+        counts["files", path.rsplit("/", 1)[0]].add(path)
+
+
+def gate_names(tree, counts):
+    names = set()
+    for path, text in tree.cpp("libchar").items():
+        if path.endswith(".hpp") and path.count("/") <= 2:
+            for within, scope in cpp.parse(text).walk():
+                if "::".join(s.name for s in (*within, scope) if s.kind != "file") == "libchar":
+                    names |= cpp.names_of(scope)
+    counts["names", "libchar"] = Count(len(names), sorted(names))
+
+
+def gate_eigen(tree, counts):
+    reached, todo = set(), ["libchar/libchar.hpp"]
+    while todo:
+        path = todo.pop()
+        if path in reached or path not in tree.texts:
+            continue
+        reached.add(path)
+        for included in re.findall(r'^\s*#\s*include\s+["<]([^">]+)[">]', tree.texts[path], re.M):
+            if included.startswith("Eigen/"):
+                counts["eigen", path].add(f"{path}: {included}")
+            todo.append(included)
+
+
+def lines_that_may_be_long(path, text):
+    """Of strings over several lines: bytes that somebody else reads. Not of docstrings."""
+    if not path.endswith(".py"):
+        return cpp.raw_string_lines(text)
+    return shape.string_lines(text)
+
+
+def gate_columns(tree, counts):
+    for path, text in tree.texts.items():
+        lines = text.split("\n")
+        if max(map(len, lines)) <= COLUMNS:
+            continue
+        free = lines_that_may_be_long(path, text)
+        floor = "libchar/log/csv" if path.startswith("libchar/log/csv/") else floor_of(path)
+        for number, line in enumerate(lines, 1):
+            if len(line) > COLUMNS and "://" not in line and number not in free:
+                counts["columns", floor].add(f"{path}:{number}")
+
+
+def gate_owners(tree, counts):
+    sources = {path: cpp.blanked(text, keep=("string",)) for path, text in tree.cpp("libchar", "tools").items()}
+    for question in QUESTIONS:
+        if question.owner and (question.file() not in sources or not question.is_there(sources[question.file()])):
+            counts["owner", question.name].add(f"tests/gates/owners.py: {question.owner} is not there")
+        own = {question.file(), question.file().replace(".cpp", ".hpp")}
+        for path, text in sources.items():
+            for hit in re.finditer(question.spelling, text) if path not in own else []:
+                line = text.count("\n", 0, hit.start()) + 1
+                counts["owner", f"{question.name}: {floor_of(path)}"].add(f"{path}:{line}")
+
+
+def measured(root):
+    tree, counts = Tree(root), collections.defaultdict(Count)
+    for gate in (gate_members, gate_files, gate_names, gate_eigen, gate_columns, gate_owners):
+        gate(tree, counts)
+    return counts
+
+
+def read_ceilings(path):
+    rows = {}
+    for line in path.read_text().splitlines() if path.exists() else []:
+        if line and not line.startswith("#"):
+            gate, key, number, reason = line.split("\t")
+            rows[gate, key] = int(number), reason
+    return rows
+
+
+def faults_of(counts, ceilings):
+    beyond = {key: count for key, count in counts.items() if count.number > LIMITS[key[0]][0]}
+    for (gate, name), count in sorted(beyond.items()):
+        limit, what = LIMITS[gate]
+        ceiling = ceilings.get((gate, name), (limit, ""))[0]
+        if count.number > ceiling:
+            places = ", ".join(count.places[:8] if gate != "names" else [])
+            yield f"{gate}: {name}: {count.number} {what}, at most {ceiling} are allowed: {places}"
+        elif count.number < ceiling:
+            yield f"{gate}: {name}: {count.number} {what}, the ceiling is {ceiling}: lower it (--lower)"
+    for (gate, name), (number, reason) in sorted(ceilings.items()):
+        if gate not in LIMITS:
+            yield f"{gate}: {name}: there is no such gate"
+        elif (gate, name) not in beyond:
+            yield f"{gate}: {name}: the row is not needed: drop it (--lower)"
+        if not reason.strip():
+            yield f"{gate}: {name}: the row has no reason"
+
+
+def lower(path, counts):
+    kept = []
+    for line in path.read_text().splitlines():
+        if line and not line.startswith("#"):
+            gate, key, number, reason = line.split("\t")
+            there = counts[gate, key].number
+            if there <= LIMITS[gate][0]:
+                continue
+            line = "\t".join((gate, key, str(min(int(number), there)), reason))
+        kept.append(line)
+    path.write_text("\n".join(kept) + "\n")
+
+
+def main():
+    roots = [word for word in sys.argv[1:] if not word.startswith("--")]
+    root = pathlib.Path(roots[0] if roots else ".")
+    if "--print" in sys.argv:
+        return shape.print_shape(root)
+    counts = measured(root)
+    if "--lower" in sys.argv:
+        lower(CEILINGS, counts)
+    ceilings = read_ceilings(CEILINGS)
+    faults = list(faults_of(counts, ceilings))
+    print("\n".join(faults)
+          or f"structure: {len(LIMITS)} gates hold, {len(ceilings)} rows are beyond a limit and may only shrink")
+    return bool(faults)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

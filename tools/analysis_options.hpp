@@ -35,7 +35,8 @@ bool read_segment(const std::string& text, libchar::WelchOptions& spectrum, doub
 /// --terms, --threshold, --no-remedies, --temperature, --no-second-opinion
 void add_fit_options(VerbOptions& verb, AnalysisOptions& analysis);
 
-/// All of the above, and how a log is read: what a characterization can be told. `session` and `analysis` must live until the verb has run.
+/// All of the above, and how a log is read: what a characterization can be told. `session` and
+/// `analysis` must live until the verb has run.
 void add_characterize_options(VerbOptions& verb, Session& session, AnalysisOptions& analysis);
 
 /// The options of the job. Throws Error(usage) for flags that do not go together.

@@ -97,13 +97,13 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
                  app.get_name(),
                  "unknown option in front of the verb",
                  command[1],
-                 near ? fmt::format("did you mean {}?", *near) : "options stand behind the verb"});
+                 libchar::did_you_mean(near, "options stand behind the verb")});
   }
   if (std::find(verbs.begin(), verbs.end(), command[1]) != verbs.end()) return;
   struct stat status {};
   std::string hint = fmt::format("the verbs are {}", fmt::join(verbs, ", "));
   if (const auto near = libchar::nearest(command[1], verbs))
-    hint = fmt::format("did you mean {}?", *near);
+    hint = libchar::did_you_mean(near);
   else if (::stat(command[1].c_str(), &status) == 0)
     hint = fmt::format("to see what is in this file: {} inspect FILE", app.get_name());
   throw Error({ErrorKind::usage, "E0203", app.get_name(), "unknown verb", command[1], hint});
@@ -160,7 +160,7 @@ void check_word(const std::string& text, const std::vector<std::string>& words) 
                "",
                fmt::format("expected one of {}", fmt::join(words, ", ")),
                text,
-               near ? fmt::format("did you mean {}?", *near) : ""});
+               libchar::did_you_mean(near)});
 }
 
 }  // namespace
@@ -352,14 +352,14 @@ std::vector<std::string> with_joined_verb(const std::vector<std::string>& comman
     return with_joined_verb({command[0], "help", command[1], command[3]}, verbs);
   if (help || (at == 2 && second.empty())) return {command[0], "help", command[at]};
   if (std::find(seconds.begin(), seconds.end(), second) == seconds.end()) {
-    const auto near = libchar::nearest(second, seconds);
+    std::optional<std::string> near = libchar::nearest(second, seconds);
+    if (near) near = command[at] + " " + *near;
     throw Error({ErrorKind::usage,
                  "E0203",
                  "sensorchar " + command[at],
                  fmt::format("which one? one of {}", fmt::join(seconds, ", ")),
                  second,
-                 near ? fmt::format("did you mean {} {}?", command[at], *near)
-                      : fmt::format("sensorchar help {}", command[at])});
+                 libchar::did_you_mean(near, "sensorchar help " + command[at])});
   }
   std::vector<std::string> joined = command;
   joined[at] = first + second;

@@ -53,8 +53,9 @@ class Option {
 
 /// The options of one verb. Names are "FILE" (an argument by its place), "--force", or "-o,--output".
 /// Variables must live until the verb has run, and keep their value where an option is not given;
-/// defaults must stand in `help`. What an option refuses is Error(usage) that names the option. A value that is called LOG, FILE, MODEL,
-/// SCENE, CURVE, RUN, DIR or FOLDER is completed as a file or folder.
+/// defaults must stand in `help`. What an option refuses is Error(usage) that names the option. A
+/// value that is called LOG, FILE, MODEL, SCENE, CURVE, RUN, DIR or FOLDER is completed as a file
+/// or folder.
 class VerbOptions {
  public:
   VerbOptions(CLI::App& app, KnownWords& words) : app_(&app), words_(&words) {}
@@ -124,8 +125,9 @@ class VerbOptions {
   KnownWords* words_;
 };
 
-/// Verbs of two words ("fleet plan") are called with a hyphen between them; here they are joined. A first word alone, and one with a second
-/// that makes no verb, is refused with those that do; all that asks for help of a first word becomes "help fleet".
+/// Verbs of two words ("fleet plan") are called with a hyphen between them; here they are joined. A
+/// first word alone, and one with a second that makes no verb, is refused with those that do; all
+/// that asks for help of a first word becomes "help fleet".
 std::vector<std::string> with_joined_verb(const std::vector<std::string>& command,
                                           const std::vector<std::string>& verbs);
 

@@ -15,7 +15,8 @@ constexpr std::size_t kPageColumns = 100;  ///< of help that is not for a termin
 
 int main(int argc, char** argv) {
   using namespace sensorchar;
-  // Blocks of a few megabytes come and go all the time: kept instead of given back to the system, they need no new pages.
+  // Blocks of a few megabytes come and go all the time: kept instead of given back to the system,
+  // they need no new pages.
   mallopt(M_MMAP_THRESHOLD, 256 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
   take_closed_streams();

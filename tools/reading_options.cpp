@@ -223,14 +223,16 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   std::string flags;
   const auto word =
       [&](const char* flag, const std::string& value, const std::string& default_value) {
-        if (value != default_value) flags += fmt::format(" {} {}", flag, shell_word(value));
+        if (value != default_value)
+          flags += fmt::format(" {} {}", flag, libchar::shell_word(value));
       };
   const auto number = [&](const char* flag, const std::optional<double>& value, const char* unit) {
     if (value) flags += fmt::format(" {} {}{}", flag, libchar::shortest(*value), unit);
   };
   const auto list = [&](const char* flag, const std::vector<std::string>& items) {
     if (!items.empty())
-      flags += fmt::format(" {} {}", flag, shell_word(fmt::format("{}", fmt::join(items, ","))));
+      flags += fmt::format(
+          " {} {}", flag, libchar::shell_word(fmt::format("{}", fmt::join(items, ","))));
   };
   word("--topic", options.topic, usual.topic);
   word("--time-source", options.time_source, usual.time_source);
@@ -239,7 +241,7 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   list("--units", options.units);
   list("--scale", options.channel_scale);
   list("--unit", options.channel_unit);
-  for (const std::string& where : options.where) flags += " --where " + shell_word(where);
+  for (const std::string& where : options.where) flags += " --where " + libchar::shell_word(where);
   word("--group-by", options.group_by, usual.group_by);
   word("--date-order", options.date_order, usual.date_order);
   number("--from", options.from_s, "s");

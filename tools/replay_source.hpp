@@ -29,8 +29,8 @@ struct ReplaySource {
 /// The argument and the options of a source. Both must live until the verb has run.
 void add_replay_source(VerbOptions& options, Session& session, ReplaySource& source);
 
-/// The scene. `scene_file`: where it will be written; empty: nowhere. Throws Error(usage) for options that do not go with
-/// what `path` is.
+/// The scene. `scene_file`: where it will be written; empty: nowhere. Throws Error(usage) for
+/// options that do not go with what `path` is.
 libchar::Scene read_replay_source(const ReplaySource& source, const std::string& scene_file);
 
 }  // namespace sensorchar

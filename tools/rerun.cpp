@@ -40,7 +40,8 @@ std::vector<std::string> ignored_keys() {
                "look at its command, and run that by hand"});
 }
 
-/// What the document says, without anything that writes elsewhere than into `folder`: a document is data, its command is no order.
+/// What the document says, without anything that writes elsewhere than into `folder`: a document is
+/// data, its command is no order.
 std::vector<std::string> words_of(const std::string& document,
                                   const Json& command,
                                   const std::string& folder) {

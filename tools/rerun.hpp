@@ -23,9 +23,10 @@ struct Rerun {
 /// Digits that another build, processor or version of a library is allowed (docs/reliability.md).
 inline constexpr double kSameDigits = 1e-8;
 
-/// `document` was written by characterize or replay; its inputs are where its command says, from `inputs_in` ("": from here). Runs with the
-/// words of that command, but into `folder`; nothing else is written. Throws Error(usage) where the command does anything else, and what the
-/// run throws.
+/// `document` was written by characterize or replay; its inputs are where its command says, from
+/// `inputs_in` ("": from here). Runs with the words of that command, but into `folder`; nothing
+/// else is written. Throws Error(usage) where the command does anything else, and what the run
+/// throws.
 Rerun rerun(Session& session,
             const std::string& document,
             const std::string& folder,

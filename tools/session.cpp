@@ -148,8 +148,9 @@ libchar::Problem with_curve_hint(const Session& session, libchar::Problem proble
   for (const std::string& word : session.command) {
     if (problem.where != word && !problem.where.starts_with(word + ":")) continue;
     if (const std::string curve = libchar::curve_in_header(word); !curve.empty())
-      problem.hint = fmt::format(
-          "this is a table of a curve: sensorchar fit {} --curve {}", shell_word(word), curve);
+      problem.hint = fmt::format("this is a table of a curve: sensorchar fit {} --curve {}",
+                                 libchar::shell_word(word),
+                                 curve);
   }
   return problem;
 }

@@ -27,8 +27,9 @@ struct Session {
 void report_warnings(Session& session, const libchar::LogInfo& info);
 void report_warnings(Session& session, const libchar::Warnings& warnings, const std::string& file);
 
-/// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],"warnings":[{code,message,
-/// count,where}…],"measured":{"work":{…}}}: the head of every --json document; the verb adds its own keys behind.
+/// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],
+/// "warnings":[{code,message,count,where}…],"measured":{"work":{…}}}: the head of every --json
+/// document; the verb adds its own keys behind.
 libchar::Json document_head(const Session& session,
                             const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs);
@@ -53,27 +54,31 @@ void write_document(Session& session,
                     const std::string& csv,
                     const DocumentOutput& output);
 
-/// Standard output takes one document: throws where `place` is "-" and what goes there is `what`, with what to give instead.
+/// Standard output takes one document: throws where `place` is "-" and what goes there is `what`,
+/// with what to give instead.
 void refuse_standard_output(const char* flag,
                             const std::string& place,
                             const char* what = "the results are several files",
                             const char* hint = "name a folder");
 
-/// What is said of a log that was written: on stdout, or, where the log itself may be there, as a note; nothing when quiet.
+/// What is said of a log that was written: on stdout, or, where the log itself may be there, as a
+/// note; nothing when quiet.
 void print_summary(Session& session, const std::string& output, const std::string& text);
 
-/// A file that cannot be written is refused before the work is done: it is an input, stands already, or its folder cannot be written.
-/// An empty path is stdout.
+/// A file that cannot be written is refused before the work is done: it is an input, stands
+/// already, or its folder cannot be written. An empty path is stdout.
 void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force);
 
 /// Runs `work` and turns whatever happened into one message and an exit code: 0 ok, 1 internal, 2
 /// usage, 3 input, 4 numeric, 5 output, 6 a failed check, 128 + signal when stopped.
 int exit_code_of(Session& session, const std::function<void()>& work);
 
-/// A call that is refused memory or a thread ends with exit code 75 instead of 4 from here on: an engine may try it again, or elsewhere.
+/// A call that is refused memory or a thread ends with exit code 75 instead of 4 from here on: an
+/// engine may try it again, or elsewhere.
 void try_again_where_refused();
 
-/// For std::set_terminate: an exception that could go nowhere (memory refused to a destructor) still ends in a sentence and an exit code.
+/// For std::set_terminate: an exception that could go nowhere (memory refused to a destructor)
+/// still ends in a sentence and an exit code.
 [[noreturn]] void end_in_a_sentence();
 
 /// Where memory was refused and a library aborts in its own way, the program ends as above.

@@ -17,13 +17,15 @@ namespace sensorchar {
 /// talk to.
 struct StdoutClosed {};
 
-/// Descriptors 0 to 2 that whoever started the program has closed (cron and daemons do) are taken, so that no output file gets one of
-/// them and messages into it. What is printed to such a stdout is an error as before: it goes nowhere.
+/// Descriptors 0 to 2 that whoever started the program has closed (cron and daemons do) are taken,
+/// so that no output file gets one of them and messages into it. What is printed to such a stdout
+/// is an error as before: it goes nowhere.
 void take_closed_streams();
 
-/// SIGINT, SIGTERM and SIGHUP set a flag that the next Progress::update turns into Cancelled. Where none comes within 0.15 s (a fit, a
-/// transform, a training), and with a second signal at once, the handler removes unfinished outputs and ends the program itself.
-/// SIGPIPE and SIGXFSZ become ordinary write errors.
+/// SIGINT, SIGTERM and SIGHUP set a flag that the next Progress::update turns into Cancelled. Where
+/// none comes within 0.15 s (a fit, a transform, a training), and with a second signal at once, the
+/// handler removes unfinished outputs and ends the program itself. SIGPIPE and SIGXFSZ become
+/// ordinary write errors.
 void install_signal_handlers();
 
 /// The work is done: a signal that came during its last moments stops nothing any more.
@@ -32,7 +34,8 @@ void work_is_done();
 /// Number of the signal that asked the program to stop, 0 when there is none.
 int stop_signal();
 
-/// Characters in a line where results are read: what COLUMNS says, else those of the terminal that stdout is; nothing for a file or a pipe.
+/// Characters in a line where results are read: what COLUMNS says, else those of the terminal that
+/// stdout is; nothing for a file or a pipe.
 std::optional<std::size_t> columns_of_stdout();
 /// The same for tables: 0, any width, where there is none.
 std::size_t table_width();
@@ -40,8 +43,8 @@ std::size_t table_width();
 /// Writes a result to stdout and checks that it went there. Throws Error(output), or StdoutClosed.
 void print(std::string_view text);
 
-/// The same for a text that is read: options of the library are named by their flags, lines are wrapped between words to the width of
-/// the terminal, and statuses are coloured there.
+/// The same for a text that is read: options of the library are named by their flags, lines are
+/// wrapped between words to the width of the terminal, and statuses are coloured there.
 void print_text(const std::string& text);
 
 /// One message on stderr, a newline added. Lines coming from files must have gone through

@@ -20,7 +20,8 @@ void add_writing_options(VerbOptions& verb, WritingOptions& writing, const std::
 
 libchar::WriteOptions write_options(const WritingOptions& writing);
 
-/// `output` is "-": the log goes to standard output, as CSV unless another format is asked for. Throws where `json` is to go there too.
+/// `output` is "-": the log goes to standard output, as CSV unless another format is asked for.
+/// Throws where `json` is to go there too.
 void take_standard_output(std::string& output, WritingOptions& writing, bool json);
 
 }  // namespace sensorchar

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "libchar/libchar.hpp"
+#include "libchar/fusion/runner.hpp"
 
 namespace fusion = libchar::fusion;
 

@@ -52,7 +52,8 @@ class AllanCovariance {
 /// stride) for the mixture; cost independent of the record length (docs/theory/allan.md).
 Eigen::MatrixXd allan_covariance(const AllanCurve& curve, const Mixture& theta);
 
-/// Remembers what was prepared: the channels of one log have the same points and share it. May be used from several threads.
+/// Remembers what was prepared: the channels of one log have the same points and share it. May be
+/// used from several threads.
 class AllanCovarianceCache {
  public:
   std::shared_ptr<const AllanCovariance> of(const AllanCurve& curve);

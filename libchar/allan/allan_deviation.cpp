@@ -12,12 +12,13 @@
 //   TOTDEV        OADEV's terms centred on every inner point of x, which is continued beyond both
 //                 ends by reflection about the end point; that is, the rate is mirrored
 //
-// The other families are in detail/parabolic.cpp (PDEV), detail/extended.cpp (MTOT, TTOT, HTOT), detail/theo.cpp (Theo1, TheoBR, TheoH)
-// and detail/time_interval.cpp (MTIE, TIE rms).
+// The other families are in detail/parabolic.cpp (PDEV), detail/extended.cpp (MTOT, TTOT, HTOT),
+// detail/theo.cpp (Theo1, TheoBR, TheoH) and detail/time_interval.cpp (MTIE, TIE rms).
 //
-// Where samples of a rate are missing all of these but TOTDEV take means over what is present (detail/missing_samples.cpp); of phase each term
-// that touches a missing sample is dropped. Sums run over fixed pieces of 65536 starts, added in order, so that the result does not
-// depend on the number of threads.
+// Where samples of a rate are missing all of these but TOTDEV take means over what is present
+// (detail/missing_samples.cpp); of phase each term that touches a missing sample is dropped. Sums
+// run over fixed pieces of 65536 starts, added in order, so that the result does not depend on the
+// number of threads.
 
 #include "libchar/allan/allan_deviation.hpp"
 

@@ -62,14 +62,16 @@ struct AllanOptions {
   double tau_max_s = 0;
   /// 0: every term; d: every (m/d)-th from m = 2 d on, where none of a rate's samples is missing
   std::uint64_t stride_divisor = 0;
-  /// Operations that an averaging time of the Theo family and of the extended total deviations (O(N m)) may cost; beyond them terms start
-  /// every m/16 samples or less, and a note says so. 0: no limit
+  /// Operations that an averaging time of the Theo family and of the extended total deviations (O(N
+  /// m)) may cost; beyond them terms start every m/16 samples or less, and a note says so. 0: no
+  /// limit
   std::uint64_t work_a_point = std::uint64_t{1} << 28U;
   int threads = 0;  ///< 0 = all cores; the result does not depend on it
 };
 
-/// Deviations of a record, with full overlap unless the options say otherwise. NaN = missing: means are over what is present of a window, more than half
-/// (detail/missing_samples.cpp); phase drops every term that touches a missing one.
+/// Deviations of a record, with full overlap unless the options say otherwise. NaN = missing: means
+/// are over what is present of a window, more than half (detail/missing_samples.cpp); phase drops
+/// every term that touches a missing one.
 /// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two
 /// scale exactly. Throws Error(numeric) when no point is possible, naming the number of samples
 /// needed; Error(usage) for a bad tau.
@@ -77,8 +79,8 @@ AllanCurve allan_deviation(std::span<const double> record,
                            double dt_s,
                            const AllanOptions& options = {});
 
-/// What is left of a curve at octaves between `tau_min_s` and `tau_max_s`, as allan_deviation would leave it. Throws Error(numeric)
-/// when nothing is.
+/// What is left of a curve at octaves between `tau_min_s` and `tau_max_s`, as allan_deviation would
+/// leave it. Throws Error(numeric) when nothing is.
 AllanCurve limited(const AllanCurve& octaves, const AllanOptions& options);
 
 }  // namespace libchar

@@ -6,8 +6,8 @@
 // 4096 that stay in the processor's cache; a block costs half as many of the level above, so that
 // all of them cost twice the first.
 //
-// In a record with missing samples a level also holds how many of the 2^l each sum lacks (missing_samples.cpp); blocks that lack none
-// go the same way as ever.
+// In a record with missing samples a level also holds how many of the 2^l each sum lacks
+// (missing_samples.cpp); blocks that lack none go the same way as ever.
 //
 // Squares are added in double within a block and in long double between blocks, whose wide exponent
 // also carries blocks that had to be scaled because their squares overflow or vanish.
@@ -205,8 +205,8 @@ void AllanPyramid::State::hand_up(
   if (above.held == kBlock) finish_held(level + 1);
 }
 
-/// One block of a level: its terms, its tail, its pair sums. All blocks but the very last have kBlock values. `absent` is null where
-/// none is missing, and at the base, where NaN says so.
+/// One block of a level: its terms, its tail, its pair sums. All blocks but the very last have
+/// kBlock values. `absent` is null where none is missing, and at the base, where NaN says so.
 void AllanPyramid::State::finish_block(std::size_t index,
                                        const double* z,
                                        const double* absent,
@@ -231,7 +231,8 @@ void AllanPyramid::State::finish_block(std::size_t index,
   hand_up(index, z, nullptr, n, base ? origin : 0.0);
 }
 
-/// Where something is missing: `z` as it stands in the tail, `sum` and `absent` as the terms and the level above need it.
+/// Where something is missing: `z` as it stands in the tail, `sum` and `absent` as the terms and
+/// the level above need it.
 void AllanPyramid::State::holed_block(
     std::size_t index, const double* z, const double* sum, const double* absent, std::size_t n) {
   const double size = std::ldexp(1.0, static_cast<int>(index));

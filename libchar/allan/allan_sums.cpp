@@ -1,11 +1,13 @@
-// Parts A and B of a record, side by side: each has, of every level l of the pyramid (allan_pyramid.cpp), the terms within it and its
-// first and last seven values z (sums of 2^l samples less the part's origin x_0). The terms of both are
+// Parts A and B of a record, side by side: each has, of every level l of the pyramid
+// (allan_pyramid.cpp), the terms within it and its first and last seven values z (sums of 2^l
+// samples less the part's origin x_0). The terms of both are
 //
 //   terms(A) + terms(B) + terms of [last seven of A | first seven of B],   z_B := z_B + n_B (x_0B - x_0A),
 //
-// n_B samples present in z_B: a term of sums of w values spans 2 w <= 8 of them, so that one across the boundary has at most seven on
-// either side. Where B ends with one value at its highest level and A with an odd number there, the two make a value of the level
-// above, which goes the same way as a part of one value.
+// n_B samples present in z_B: a term of sums of w values spans 2 w <= 8 of them, so that one across
+// the boundary has at most seven on either side. Where B ends with one value at its highest level
+// and A with an odd number there, the two make a value of the level above, which goes the same way
+// as a part of one value.
 
 #include "libchar/allan/allan_sums.hpp"
 
@@ -60,8 +62,8 @@ void add_point(std::uint64_t m,
   curve.points.push_back(point);
 }
 
-/// Values of level `index` about the origin of another part; the samples of level 0 have none. In long double: the origins may be far
-/// apart, and so may z and what it becomes be near.
+/// Values of level `index` about the origin of another part; the samples of level 0 have none. In
+/// long double: the origins may be far apart, and so may z and what it becomes be near.
 void move_origin(LevelEnd& end, std::size_t index, double from, double to) {
   if (index == 0 || std::isnan(from) || std::isnan(to)) return;
   const double size = std::ldexp(1.0, static_cast<int>(index));
@@ -138,8 +140,8 @@ LevelEnd read_end(StateReader& from) {
   return end;
 }
 
-/// Terms of sums of 2^k values start at some of those that have as many behind them; others would make a curve that no record has, whose
-/// covariance takes for ever.
+/// Terms of sums of 2^k values start at some of those that have as many behind them; others would
+/// make a curve that no record has, whose covariance takes for ever.
 bool possible(const AllanLevel& level) {
   for (std::size_t k = 0; k < level.terms.size(); ++k) {
     const std::uint64_t span = std::uint64_t{2} << k;

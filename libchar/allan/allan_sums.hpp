@@ -11,7 +11,8 @@
 
 namespace libchar {
 
-/// Sums over the terms of one averaging factor; d is the difference of the means of what is present in neighbouring windows.
+/// Sums over the terms of one averaging factor; d is the difference of the means of what is present
+/// in neighbouring windows.
 struct PresentTerms {
   long double squares = 0;    ///< of d
   long double shortfall = 0;  ///< of (weight of a window in d)² · (1/present - 1/m)
@@ -44,8 +45,9 @@ struct AllanSums {
   std::vector<AllanLevel> levels;
 };
 
-/// Adds the part that follows directly. What is in `sums` must have a multiple of the least power of two of samples that is not
-/// below those of `later`, or be empty: then no sum of `later` straddles the boundary. Else std::logic_error.
+/// Adds the part that follows directly. What is in `sums` must have a multiple of the least power
+/// of two of samples that is not below those of `later`, or be empty: then no sum of `later`
+/// straddles the boundary. Else std::logic_error.
 void join(AllanSums& sums, const AllanSums& later);
 
 /// Of the record times a factor, for its curve: no part is joined to them any more.

@@ -6,8 +6,9 @@
 
 namespace libchar {
 
-/// Fills edf, ci68, ci95 and reliable of every point for the fitted mixture, and takes the bias that SP 1065 states for it out of the
-/// modified and Hadamard total deviations (`bias`: raw variance over this one). MTIE and TIE rms have no interval: edf stays 0.
+/// Fills edf, ci68, ci95 and reliable of every point for the fitted mixture, and takes the bias
+/// that SP 1065 states for it out of the modified and Hadamard total deviations (`bias`: raw
+/// variance over this one). MTIE and TIE rms have no interval: edf stays 0.
 void add_intervals(AllanCurve& curve, const Mixture& theta);
 
 }  // namespace libchar

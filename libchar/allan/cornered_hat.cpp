@@ -1,16 +1,22 @@
-// J. E. Gray, D. W. Allan, "A method for estimating the frequency stability of an individual oscillator", 28th Ann. Symp. Frequency
-// Control (1974); for n devices: C. R. Ekstrom, P. A. Koppang, "Error bars for three-cornered hats", IEEE Trans. UFFC 53 (2006) 876.
-// The variances of pairwise differences of independent devices are sums, s_ij = v_i + v_j; least squares over all pairs gives
+// J. E. Gray, D. W. Allan, "A method for estimating the frequency stability of an individual
+// oscillator", 28th Ann. Symp. Frequency Control (1974); for n devices: C. R. Ekstrom, P. A.
+// Koppang, "Error bars for three-cornered hats", IEEE Trans. UFFC 53 (2006) 876. The variances of
+// pairwise differences of independent devices are sums, s_ij = v_i + v_j; least squares over all
+// pairs gives
 //
 //   v_i = ( S_i - T/(n-1) ) / (n-2),     S_i = sum_{j != i} s_ij,   T = sum_{i<j} s_ij
 //
 // (n = 3: (s_12 + s_13 - s_23)/2). v_i may be negative; it is said, and never clipped. With nu degrees of freedom each,
-// Cov(s_ij, s_kl) = 2 c^2/nu, c the covariance of the two differences: v_i + v_j for one pair, v_i for two that share device i.
+// Cov(s_ij, s_kl) = 2 c^2/nu, c the covariance of the two differences: v_i + v_j for one pair, v_i
+// for two that share device i.
 //
-// J. Groslambert, D. Fest, M. Olivier, J. J. Gagnepain, "Characterization of frequency fluctuations by crosscorrelations and by using three or
-// more oscillators", 35th Ann. Freq. Control Symp. (1981); Vernotte, Calosso, Rubiola, IFCS 2016: from three logs of differences
-// x = a - b, y = b - c, z = c - a with measurement noises of their own,  v_a = - <d_x d_z> / (2 tau^2), d the second differences: their
-// noises have no covariance. Without such noise x + y + z = 0, and it is the three-cornered hat.
+// J. Groslambert, D. Fest, M. Olivier, J. J. Gagnepain, "Characterization of frequency fluctuations
+// by crosscorrelations and by using three or more oscillators", 35th Ann. Freq. Control Symp.
+// (1981); Vernotte, Calosso, Rubiola, IFCS 2016: from three logs of differences
+// x = a - b, y = b - c, z = c - a with measurement noises of their own, d the second differences,
+//   v_a = - <d_x d_z> / (2 tau^2)
+// as their noises have no covariance. Without such noise x + y + z = 0, and it is the
+// three-cornered hat.
 
 #include "libchar/allan/cornered_hat.hpp"
 

@@ -39,15 +39,17 @@ struct CorneredHat {
   std::vector<std::string> notes;
 };
 
-/// From n >= 3 records of one length that measure the same at the same time, each with noise of its own: variances of all pairwise
-/// differences, then least squares (cornered_hat.cpp). A statistic that is a mean square (all but MTIE, TheoBR and TheoH). Throws Error(usage) for
-/// others, fewer than three records, or lengths that differ; as allan_deviation.
+/// From n >= 3 records of one length that measure the same at the same time, each with noise of its
+/// own: variances of all pairwise differences, then least squares (cornered_hat.cpp). A statistic
+/// that is a mean square (all but MTIE, TheoBR and TheoH). Throws Error(usage) for others, fewer
+/// than three records, or lengths that differ; as allan_deviation.
 CorneredHat cornered_hat(std::span<const std::vector<double>> records,
                          double dt_s,
                          const AllanOptions& options = {});
 
-/// From three records of differences, a - b, b - c, c - a, each measured by itself: the covariances of the two that a device is in, in which
-/// the noise of the measurements drops out (Groslambert). Overlapping Allan variance only.
+/// From three records of differences, a - b, b - c, c - a, each measured by itself: the covariances
+/// of the two that a device is in, in which the noise of the measurements drops out (Groslambert).
+/// Overlapping Allan variance only.
 CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> differences,
                                         double dt_s,
                                         const AllanOptions& options = {});

@@ -1,4 +1,5 @@
-// DADEV(t, tau): the deviation of the window of W samples around t. Windows are independent of each other, O(N W log W / step) at octaves.
+// DADEV(t, tau): the deviation of the window of W samples around t. Windows are independent of each
+// other, O(N W log W / step) at octaves.
 
 #include "libchar/allan/dynamic_deviation.hpp"
 

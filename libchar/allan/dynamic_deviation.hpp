@@ -26,8 +26,9 @@ struct DynamicDeviation {
   std::vector<std::string> notes;
 };
 
-/// L. Galleani, P. Tavella, "The dynamic Allan variance", IEEE Trans. UFFC 56 (2009) 450: the deviation of each window of the record, which
-/// stands for its middle. Windows begin at 0, step, 2 step … while they fit. Throws Error(usage) for a window that is too short or longer than the
+/// L. Galleani, P. Tavella, "The dynamic Allan variance", IEEE Trans. UFFC 56 (2009) 450: the
+/// deviation of each window of the record, which stands for its middle. Windows begin at 0, step, 2
+/// step … while they fit. Throws Error(usage) for a window that is too short or longer than the
 /// record, or more windows than a million; Error(numeric) when no window gives a point.
 DynamicDeviation dynamic_deviation(std::span<const double> record,
                                    double dt_s,

@@ -3,8 +3,8 @@
 //   variance of a mean of m:      [m (1 + phi)/e - 2 phi E/e²] / m²
 //   covariance of neighbours:     phi E²/e² / m²
 //   AVAR(m) = their difference
-// For m dt << tau both are nearly one: there the difference is that of a random walk of K² = 2/tau, (2m² + 1) dt/(3 m tau), less 3/4 of
-// m dt/tau of it.
+// For m dt << tau both are nearly one: there the difference is that of a random walk of K² = 2/tau,
+// (2m² + 1) dt/(3 m tau), less 3/4 of m dt/tau of it.
 #include "libchar/allan/gauss_markov_curves.hpp"
 
 #include <cmath>

@@ -21,8 +21,8 @@ double allan_asymptote(Term term, double tau_s);
 double unit_spectrum(Term term, double frequency_hz, double dt_s);
 double spectrum(const Mixture& theta, double frequency_hz, double dt_s);
 
-/// Flicker phase noise of unit coefficient, y_t = (x_t - x_{t-1})/dt with x unit flicker: two-sided density 2 sin(pi f dt)/dt, and Allan
-/// variance (2/pi) (4 H_m - H_2m)/(m dt)².
+/// Flicker phase noise of unit coefficient, y_t = (x_t - x_{t-1})/dt with x unit flicker: two-sided
+/// density 2 sin(pi f dt)/dt, and Allan variance (2/pi) (4 H_m - H_2m)/(m dt)².
 double flicker_phase_spectrum(double frequency_hz, double dt_s);
 double flicker_phase_allan_variance(double m, double dt_s);
 

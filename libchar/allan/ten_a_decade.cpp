@@ -1,6 +1,7 @@
-// The overlapping Allan deviation at averaging factor m = r m' of a record is that at m' of its means of r samples, with terms that
-// start every r samples instead of every one. For r <= m/8 neighbouring terms are alike to an eighth of their length.
-// The first begins r/2 samples in: the first sample of all is in one of all terms, and would be in r times its share of them.
+// The overlapping Allan deviation at averaging factor m = r m' of a record is that at m' of its
+// means of r samples, with terms that start every r samples instead of every one. For r <= m/8
+// neighbouring terms are alike to an eighth of their length. The first begins r/2 samples in: the
+// first sample of all is in one of all terms, and would be in r times its share of them.
 #include "libchar/allan/ten_a_decade.hpp"
 
 #include <algorithm>

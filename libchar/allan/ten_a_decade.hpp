@@ -8,9 +8,10 @@
 
 namespace libchar {
 
-/// Adds m = round(10^(i/10)) to a curve of octaves (oadev) of this record, between `tau_min_s` and `tau_max_s`. From m = 16 on terms
-/// start every m/16 to m/8 samples, which costs a hundredth of the degrees of freedom; m is rounded to that. Records longer than
-/// `exact_samples` get none below m = 64; records with missing samples exact ones, or none.
+/// Adds m = round(10^(i/10)) to a curve of octaves (oadev) of this record, between `tau_min_s` and
+/// `tau_max_s`. From m = 16 on terms start every m/16 to m/8 samples, which costs a hundredth of
+/// the degrees of freedom; m is rounded to that. Records longer than `exact_samples` get none below
+/// m = 64; records with missing samples exact ones, or none.
 void add_ten_a_decade(std::span<const double> record,
                       const AllanOptions& options,
                       std::uint64_t exact_samples,

@@ -1,5 +1,6 @@
 #pragma once
-// A run of benchmarks as its reports show it: sections with sentences, a table and a chart. Terminal, Markdown and page only print it.
+// A run of benchmarks as its reports show it: sections with sentences, a table and a chart.
+// Terminal, Markdown and page only print it.
 
 #include <string>
 #include <vector>

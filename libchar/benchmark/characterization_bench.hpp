@@ -1,6 +1,6 @@
 #pragma once
-// Every way to get noise coefficients from a record, on simulated records whose coefficients are known: error over what is possible at all,
-// coverage of stated intervals, time and memory.
+// Every way to get noise coefficients from a record, on simulated records whose coefficients are
+// known: error over what is possible at all, coverage of stated intervals, time and memory.
 
 #include <cstdint>
 #include <optional>
@@ -32,7 +32,8 @@ struct CharacterizationBenchOptions {
   std::vector<std::string> methods;  ///< empty: all
 };
 
-/// A term whose bound is wider than this share of it is not in the mean of errors: an estimate of zero would be the best there is.
+/// A term whose bound is wider than this share of it is not in the mean of errors: an estimate of
+/// zero would be the best there is.
 inline constexpr double kTellable = 0.5;
 
 /// How well a method gets one coefficient that is in the records.
@@ -70,8 +71,9 @@ struct CharacterizationBench {
   std::vector<std::string> notes;
 };
 
-/// Records are simulated one after the other, and each is given to every method in turn. Throws Error(usage) for a method that is not
-/// known, Error(input) for a model without white noise, flicker or walk.
+/// Records are simulated one after the other, and each is given to every method in turn. Throws
+/// Error(usage) for a method that is not known, Error(input) for a model without white noise,
+/// flicker or walk.
 CharacterizationBench bench_characterization(const BenchSignal& signal,
                                              const CharacterizationBenchOptions& options,
                                              Progress& progress = no_progress(),

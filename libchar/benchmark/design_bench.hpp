@@ -1,6 +1,6 @@
 #pragma once
-// Questions before buying and before recording: how many of which sensor reach an error, and how long a record must be to know a
-// coefficient. From the bounds, checked by simulation.
+// Questions before buying and before recording: how many of which sensor reach an error, and how
+// long a record must be to know a coefficient. From the bounds, checked by simulation.
 
 #include <optional>
 #include <string>
@@ -47,7 +47,8 @@ struct DesignBench {
   std::vector<RecordNeeded> records;
 };
 
-/// Throws Error(usage) for an averaging time below a sample's, or models of several units or rates where a target is asked for.
+/// Throws Error(usage) for an averaging time below a sample's, or models of several units or rates
+/// where a target is asked for.
 DesignBench bench_design(const std::vector<BenchSignal>& models,
                          const DesignOptions& options,
                          Progress& progress = no_progress());

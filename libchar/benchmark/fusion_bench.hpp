@@ -1,6 +1,6 @@
 #pragma once
-// Fusion algorithms on scenes, with seeds and options varied: error against time and memory, with intervals on both, scene by scene and over
-// all of them.
+// Fusion algorithms on scenes, with seeds and options varied: error against time and memory, with
+// intervals on both, scene by scene and over all of them.
 
 #include <cstdint>
 #include <optional>

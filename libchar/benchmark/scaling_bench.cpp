@@ -14,6 +14,7 @@
 #include "libchar/core/distributions.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "libchar/simulate/random.hpp"
 #include "libchar/spectrum/welch.hpp"

@@ -1,6 +1,6 @@
 #pragma once
-// How cost grows: with the length of a record, the number of sensors, true inputs, threads. Fitted exponents, and where a method stops
-// keeping up with its sensors.
+// How cost grows: with the length of a record, the number of sensors, true inputs, threads. Fitted
+// exponents, and where a method stops keeping up with its sensors.
 
 #include <cstdint>
 #include <optional>
@@ -33,8 +33,8 @@ struct ScalingSeries {
   std::vector<ScalingPoint> points;
   /// p of cost ~ x^p over the last three octaves; no count: too few points
   Figure exponent;
-  /// of instants over sensors: the most sensors that one processor keeps up with at `rate_hz`, interpolated; extrapolated by the
-  /// exponent, at most to a million
+  /// of instants over sensors: the most sensors that one processor keeps up with at `rate_hz`,
+  /// interpolated; extrapolated by the exponent, at most to a million
   std::optional<double> keeps_up_to;
 };
 
@@ -47,7 +47,8 @@ ScalingBench bench_scaling(const ScalingBenchOptions& options,
                            Progress& progress = no_progress(),
                            HeapMeter* heap = nullptr);
 
-/// p of cost ~ x^p by least squares on the logarithms of the points whose x is at least an eighth of the largest, with Student's interval.
+/// p of cost ~ x^p by least squares on the logarithms of the points whose x is at least an eighth
+/// of the largest, with Student's interval.
 Figure growth_exponent(const std::vector<ScalingPoint>& points);
 
 }  // namespace libchar

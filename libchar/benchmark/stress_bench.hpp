@@ -1,6 +1,6 @@
 #pragma once
-// Hard inputs through every estimator, simulator and fusion algorithm: how many digits are right, what is refused in a sentence, and
-// what is neither.
+// Hard inputs through every estimator, simulator and fusion algorithm: how many digits are right,
+// what is refused in a sentence, and what is neither.
 
 #include <cstdint>
 #include <limits>

@@ -10,8 +10,8 @@
 
 namespace libchar {
 
-/// In which order `count` subjects run in a round: rotated by one each round and reversed in every second, so that each runs at every
-/// place, and after every other, about as often.
+/// In which order `count` subjects run in a round: rotated by one each round and reversed in every
+/// second, so that each runs at every place, and after every other, about as often.
 std::vector<std::size_t> order_of_round(std::size_t count, std::size_t round);
 
 /// Seconds of processor time of this thread.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/log/quality.hpp"
 
 namespace libchar {
 namespace {

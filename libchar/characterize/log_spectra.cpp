@@ -8,6 +8,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/log/quality.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
 

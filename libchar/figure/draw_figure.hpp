@@ -40,9 +40,10 @@ struct DrawingOptions {
 /// Whether PDF and PNG can be drawn: the library was built with Cairo.
 bool draws_with_cairo();
 
-/// The bytes of the file: the same for the same figure and options. Text is text, in Liberation Sans, which has the widths of Arial and
-/// Helvetica; a PDF embeds what it uses of it. Where the font is not installed, PDF and PNG take another one and `warnings` says so
-/// (SVG names both). Throws Error(usage) for a PDF or PNG without Cairo and for sizes that nothing can be drawn in.
+/// The bytes of the file: the same for the same figure and options. Text is text, in Liberation
+/// Sans, which has the widths of Arial and Helvetica; a PDF embeds what it uses of it. Where the
+/// font is not installed, PDF and PNG take another one and `warnings` says so (SVG names both).
+/// Throws Error(usage) for a PDF or PNG without Cairo and for sizes that nothing can be drawn in.
 std::string draw_figure(const Chart& figure,
                         FigureFormat format,
                         const DrawingOptions& options,

@@ -1,6 +1,6 @@
 #pragma once
-// A figure before it is drawn: axes, series, marks, in the units of the data. SVG, PDF, PNG, gnuplot, CSV and the terminal are
-// all made of it.
+// A figure before it is drawn: axes, series, marks, in the units of the data. SVG, PDF, PNG,
+// gnuplot, CSV and the terminal are all made of it.
 
 #include <cstddef>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
-// What a figure is drawn from: reports of characterizations and replays, curves, sensor models. A report is the document that its
-// page draws from.
+// What a figure is drawn from: reports of characterizations and replays, curves, sensor models. A
+// report is the document that its page draws from.
 
 #include <array>
 #include <memory>
@@ -29,8 +29,8 @@ struct SourceMark {
   std::string text;  ///< "N = 0.00401 deg/s·√s"
 };
 
-/// An Allan curve or a spectrum of one channel, measured or of a model, with what belongs to it. Lists are as long as `x` or empty;
-/// NaN: not known.
+/// An Allan curve or a spectrum of one channel, measured or of a model, with what belongs to it.
+/// Lists are as long as `x` or empty; NaN: not known.
 struct SourceCurve {
   std::string channel;
   std::string unit;       ///< of the channel, in its usual spelling
@@ -77,8 +77,9 @@ struct FigureSource {
   std::shared_ptr<const Document> replay;  ///< the report of a replay; null: it is none
 };
 
-/// Reads report.json of characterize or replay (or the folder that holds it), what `allan`, `psd` and `fit` print, curves.csv and
-/// tables of curves like it, sensor models. A log is refused with the command that makes a curve of it. Throws Error(input).
+/// Reads report.json of characterize or replay (or the folder that holds it), what `allan`, `psd`
+/// and `fit` print, curves.csv and tables of curves like it, sensor models. A log is refused with
+/// the command that makes a curve of it. Throws Error(input).
 FigureSource read_figure_source(const std::string& path);
 
 /// The same of a document's text that stands for a file at `path`.

@@ -14,7 +14,8 @@ struct TerminalFigureOptions {
   bool colour = false;       ///< escapes of ECMA-48
 };
 
-/// Lines that end in a newline, none wider than `columns` (at least 40). Each series has a letter where there are several, and a colour.
+/// Lines that end in a newline, none wider than `columns` (at least 40). Each series has a letter
+/// where there are several, and a colour.
 std::string terminal_figure(const Chart& figure, const TerminalFigureOptions& options);
 
 }  // namespace libchar

@@ -1,11 +1,10 @@
 #pragma once
-// What is asked of a fit, and what the fits of one log share.
+// What is asked of a fit.
 
 #include <array>
 #include <optional>
 #include <string>
 
-#include "libchar/allan/allan_covariance.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {
@@ -34,12 +33,6 @@ struct FitOptions {
   double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this
   bool second_opinion = true;   ///< covariance-weighted Allan fit beside the first
   int threads = 1;
-};
-
-/// What the fits of one log's channels share, from any number of threads: it saves time and changes
-/// no result.
-struct FitWorkspace {
-  AllanCovarianceCache covariances;
 };
 
 }  // namespace libchar

@@ -16,6 +16,8 @@
 
 namespace libchar {
 
+struct FitWorkspace;  // allan_fit.hpp
+
 /// Widens intervals, limits and covariance by a factor >= 1 and calls what has a value a misfit: the coefficients scatter more than the
 /// likelihood says.
 void widen_as_misfit(double wider, NoiseFit& fit);

@@ -188,7 +188,8 @@ bool is_yaml(const std::string& path) {
   return (ending_of(path) == ".yaml" || ending_of(path) == ".yml") && !is_rosbag2(path);
 }
 
-/// In any case, and as slips are: that such a table is a manifest must not hang on a letter. "log" is too short for slips: lat, lon.
+/// In any case, and as slips are: that such a table is a manifest must not hang on a letter. "log"
+/// is too short for slips: lat, lon.
 bool is_head_of_log(const std::string& head) {
   return head == "log" || head == "logs" || head == "logfile" || head == "log_file" ||
          head == "log file";

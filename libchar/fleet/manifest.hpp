@@ -28,8 +28,8 @@ struct Manifest {
   std::vector<CharacterizeOptions> options;  ///< as many as differ
 };
 
-/// Paths are relative to the manifest's folder. `options` are those that an entry does not set. Throws Error(input) with place, key and the
-/// nearest valid key.
+/// Paths are relative to the manifest's folder. `options` are those that an entry does not set.
+/// Throws Error(input) with place, key and the nearest valid key.
 Manifest read_manifest(const std::string& path, const CharacterizeOptions& options = {});
 
 /// The same from text that stands for a file at `path`; a table where the path ends in .csv or .tsv.
@@ -37,13 +37,14 @@ Manifest parse_manifest(std::string_view text,
                         const std::string& path,
                         const CharacterizeOptions& options = {});
 
-/// Each log is a device of its own, called as its file is; by their folders too where two are alike. A word with * ? [ that is no file stands
-/// for the files that match. Throws Error(input) where none does, Error(usage) for a manifest among them.
+/// Each log is a device of its own, called as its file is; by their folders too where two are
+/// alike. A word with * ? [ that is no file stands for the files that match. Throws Error(input)
+/// where none does, Error(usage) for a manifest among them.
 Manifest manifest_of_logs(const std::vector<std::string>& words,
                           const CharacterizeOptions& options = {});
 
-/// What is meant as a manifest, right or not: YAML, a file that says `fleet-manifest`, a table with a column `log` or `device` in any case
-/// and spelling nearby that holds no samples.
+/// What is meant as a manifest, right or not: YAML, a file that says `fleet-manifest`, a table with
+/// a column `log` or `device` in any case and spelling nearby that holds no samples.
 bool is_manifest(const std::string& path);
 
 }  // namespace libchar

@@ -65,7 +65,8 @@ std::string report_of(const FleetUnit& unit, const fs::path& folder, const fs::p
                                    .string();
 }
 
-/// An id of each options that a plan has: units share them. Those of one channel may come from unlike lists of whole logs.
+/// An id of each options that a plan has: units share them. Those of one channel may come from
+/// unlike lists of whole logs.
 class OptionIds {
  public:
   explicit OptionIds(std::string (*id)(const FleetUnit&)) : id_(id) {}

@@ -1,6 +1,7 @@
 #pragma once
-// The results of a fleet put together, in the order of its plan whatever order they came in; of several fleets (batches that were planned
-// on different machines) as if one plan had had all of their devices.
+// The results of a fleet put together, in the order of its plan whatever order they came in; of
+// several fleets (batches that were planned on different machines) as if one plan had had all of
+// their devices.
 
 #include <filesystem>
 #include <string>
@@ -23,8 +24,8 @@ struct PlannedFleet {
   FleetPlan plan;
 };
 
-/// In an order of their own, whatever order the folders are named in. Throws Error(input) as read_plan does, and Error(usage) for a folder
-/// that is named twice.
+/// In an order of their own, whatever order the folders are named in. Throws Error(input) as
+/// read_plan does, and Error(usage) for a folder that is named twice.
 std::vector<PlannedFleet> read_fleets(const std::vector<std::string>& folders);
 
 /// Throws Error(input), by name, where two of the fleets have one log with the same settings: it would count twice.
@@ -33,7 +34,8 @@ void refuse_common_logs(const std::vector<PlannedFleet>& fleets);
 /// What is typed for the report of these fleets: beside a folder that is the working one, not in it.
 std::string merge_command(const std::vector<std::string>& folders);
 
-/// A record for each device of the plan. Throws Error(input) where results are missing or damaged, by name, unless `partial`.
+/// A record for each device of the plan. Throws Error(input) where results are missing or damaged,
+/// by name, unless `partial`.
 std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
                                          const std::filesystem::path& folder,
                                          const MergeOptions& options = {},

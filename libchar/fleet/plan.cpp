@@ -151,7 +151,8 @@ std::map<std::string, NoiseLimits> read_limits(const Manifest& manifest) {
   return files;
 }
 
-/// Limits are those of a type, and name channels that any of its devices may have: as they are held against the lot in the end.
+/// Limits are those of a type, and name channels that any of its devices may have: as they are held
+/// against the lot in the end.
 void check_limits(const Manifest& manifest,
                   const std::vector<LookedAt>& logs,
                   const std::map<std::string, NoiseLimits>& limits) {
@@ -217,7 +218,8 @@ void check_by_channel(const Manifest& manifest) {
                    "leave `by_channel` out, or give units by name with `channel_unit`"});
 }
 
-/// Which channels are a unit: each alone; the thermometer, which all of them read, with the one beside it, so that it is there once.
+/// Which channels are a unit: each alone; the thermometer, which all of them read, with the one
+/// beside it, so that it is there once.
 std::vector<std::vector<std::size_t>> channel_groups(std::size_t channels,
                                                      std::optional<std::size_t> thermometer) {
   std::vector<std::vector<std::size_t>> groups;
@@ -330,8 +332,8 @@ PlannedDevice parse_device(const Document& document, const std::string& path) {
                "make a plan with: sensorchar fleet plan MANIFEST -o DIR"});
 }
 
-/// One after the other: the text of a plan of a hundred thousand units is larger than the plan. What stands behind the last end of line is
-/// a line too.
+/// One after the other: the text of a plan of a hundred thousand units is larger than the plan.
+/// What stands behind the last end of line is a line too.
 void for_lines_of(const std::string& path, const std::function<void(std::string_view)>& take) {
   constexpr std::size_t kPieceOfPlan = std::size_t{1} << 20U;
   std::string begun;
@@ -414,8 +416,9 @@ class PlanReader {
   OptionsTable shared_;
 };
 
-/// Whole or not there for whoever reads it now, after a power cut perhaps neither: flushing thousands of files takes longer than all else
-/// of planning, and whoever reads a task sees whether it is torn.
+/// Whole or not there for whoever reads it now, after a power cut perhaps neither: flushing
+/// thousands of files takes longer than all else of planning, and whoever reads a task sees whether
+/// it is torn.
 void write_task(const fs::path& file, const std::string& text) {
   const std::string temporary = fmt::format("{}{}{}-0", file.string(), kTemporaryMark, ::getpid());
   std::ofstream out(temporary, std::ios::binary);

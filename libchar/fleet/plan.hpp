@@ -46,8 +46,9 @@ struct FleetPlan {
   std::vector<std::pair<std::string, Warnings>> warned;
 };
 
-/// Looks into every log, takes its digest where none is stated, and reads the limits. Throws Error(input) for limits that cannot be read, for
-/// logs that cannot be read or have no sampling rate (all of them named, the first few with the reason), and for one log twice.
+/// Looks into every log, takes its digest where none is stated, and reads the limits. Throws
+/// Error(input) for limits that cannot be read, for logs that cannot be read or have no sampling
+/// rate (all of them named, the first few with the reason), and for one log twice.
 FleetPlan plan_fleet(const Manifest& manifest,
                      const FleetPlanOptions& options,
                      Progress& progress = no_progress());
@@ -64,15 +65,16 @@ std::optional<ReplacedPlan> plan_in(const std::filesystem::path& folder);
 /// Results in the folder that are of no unit of the plan.
 std::size_t results_of_others(const FleetPlan& plan, const std::filesystem::path& folder);
 
-/// Writes the tasks and, flushed to the disk, DIR/plan.jsonl, which makes them a plan. A plan that stands there is replaced; results stay, and
-/// those of units that are still the same are used. Throws Error(output).
+/// Writes the tasks and, flushed to the disk, DIR/plan.jsonl, which makes them a plan. A plan that
+/// stands there is replaced; results stay, and those of units that are still the same are used.
+/// Throws Error(output).
 void write_plan(const FleetPlan& plan, const std::filesystem::path& folder);
 
 /// Throws Error(input) for what is no plan, or one of another version of the program.
 FleetPlan read_plan(const std::filesystem::path& folder);
 
-/// A unit by the file of its task, DIR/tasks/N.json. Tasks are not flushed one by one: one that a power cut has torn, or that is gone, is read
-/// from the plan. Throws Error(input).
+/// A unit by the file of its task, DIR/tasks/N.json. Tasks are not flushed one by one: one that a
+/// power cut has torn, or that is gone, is read from the plan. Throws Error(input).
 FleetUnit read_task(const std::string& file);
 
 /// The folder of the fleet that a task is in, DIR. Throws Error(input) where it has no plan.

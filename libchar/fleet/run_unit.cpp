@@ -215,7 +215,8 @@ UnitRun compute(const FleetUnit& unit, const fs::path& fleet, Progress& progress
   return out;
 }
 
-/// A result is there, the digest that was stated for it is not that of this log yet: a manifest may take one log for another.
+/// A result is there, the digest that was stated for it is not that of this log yet: a manifest may
+/// take one log for another.
 UnitRun confirm(const FleetUnit& unit, const fs::path& fleet) {
   const std::string seen = seen_log(unit);
   check_digest(unit);

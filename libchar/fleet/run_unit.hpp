@@ -28,9 +28,10 @@ struct UnitRun {
   Warnings warnings{};    ///< of a log that was read to its end
 };
 
-/// Computes what is missing of the unit and publishes it in `fleet`/results, whole or not at all. What the log's content does not allow is a
-/// result too. Throws Error(input) where the log was changed after it was planned, Error(again) for what may be otherwise the next time: a log
-/// that cannot be opened, parts of a join that are not there yet, a full disk.
+/// Computes what is missing of the unit and publishes it in `fleet`/results, whole or not at all.
+/// What the log's content does not allow is a result too. Throws Error(input) where the log was
+/// changed after it was planned, Error(again) for what may be otherwise the next time: a log that
+/// cannot be opened, parts of a join that are not there yet, a full disk.
 UnitRun run_unit(const FleetUnit& unit,
                  const std::filesystem::path& fleet,
                  Progress& progress = no_progress());

@@ -27,7 +27,8 @@ FleetStatus fleet_status(const FleetPlan& plan,
                          const std::filesystem::path& folder,
                          Progress& progress = no_progress());
 
-/// Ids of stretches whose log has been joined: their partial states are not needed any more, whether they are there, count, or not.
+/// Ids of stretches whose log has been joined: their partial states are not needed any more,
+/// whether they are there, count, or not.
 std::unordered_set<std::string> joined_stretches(const FleetPlan& plan,
                                                  const std::filesystem::path& folder);
 

@@ -38,12 +38,14 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "libchar/core/present.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/fusion/array.hpp"
+#include "libchar/fusion/description.hpp"
 #include "libchar/fusion/fault_log.hpp"
 #include "libchar/fusion/learnt.hpp"
 #include "libchar/fusion/options.hpp"
@@ -56,6 +58,10 @@ inline constexpr int kMaxStates = 8;  ///< inputs r that an algorithm can estima
 using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxStates, 1>;
 /// One instant, one value a channel, NaN = missing; or the true inputs of that instant.
 using Sample = Eigen::Map<const Eigen::VectorXd>;
+/// Of a vector of known length, for LearntExchange.
+inline std::span<double> span_of(Eigen::VectorXd& values) {
+  return {values.data(), static_cast<std::size_t>(values.size())};
+}
 
 using libchar::kLargestSample;
 /// A sample that carries a value: NaN marks a missing one.
@@ -79,38 +85,6 @@ struct Estimate {
     return {State::Constant(inputs, std::numeric_limits<double>::quiet_NaN()),
             State::Constant(inputs, std::numeric_limits<double>::quiet_NaN())};
   }
-};
-
-/// Where all pairs of channels have numbers of their own: at most 160 MB of them.
-inline constexpr Eigen::Index kMostPaired = 2000;
-
-struct Needs {
-  Eigen::Index min_channels = 1;
-  Eigen::Index max_channels = 0;      ///< 0: any number; else memory that grows with their square
-  Eigen::Index more_than_inputs = 0;  ///< n must exceed this many times r (MINQUE: 2)
-  std::int64_t learning_samples = 0;  ///< at least so many instants with a reference before the run
-  bool reference = false;             ///< learns from a reference, in the learning window
-  /// looks at the reference of the run itself: a bound, not a method
-  bool reference_throughout = false;
-  bool noise_levels = false;  ///< a noise variance for each channel
-  bool noise_models = false;  ///< a noise model for each channel
-  /// takes any H (otherwise every channel must see the one input with gain one)
-  bool observation_matrix = false;
-  bool accepts_missing = false;   ///< otherwise an instant with a missing sample has no estimate
-  bool fault_free_start = false;  ///< a stretch without faults at the beginning of the run
-  bool rate = false;              ///< the sampling rate
-  bool tilt = false;              ///< one gyroscope axis and two accelerometer axes
-};
-
-/// What the plan, the docs and the report print about an algorithm.
-struct Description {
-  std::string_view name;        ///< stable key: "inverse-variance"
-  std::string_view title;       ///< one line
-  std::string_view source;      ///< where the equations stand
-  std::string_view complexity;  ///< of a step
-  Needs needs = {};
-  /// of one learning instant; "" when nothing is learnt
-  std::string_view learning_complexity = "";
 };
 
 template <class A>

@@ -1,7 +1,6 @@
 #pragma once
 // Before fusion: what makes sensors of one quantity differ that is no noise, and how to take it out.
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -36,29 +35,6 @@ struct Alignment {
   std::vector<ChannelLimits> limits;  ///< of all rows of the samples, those of other axes included
   std::int64_t instants = 0;          ///< it was learnt from
   std::vector<std::string> notes;     ///< what the stretch could not tell, sentences
-};
-
-/// The mean over the sensors of each further axis at one instant, saturated samples left out.
-void cross_means(const Alignment& alignment,
-                 const Eigen::Ref<const Eigen::VectorXd>& column,
-                 Eigen::VectorXd& means);
-
-/// Aligned samples with their biases, gains and other axes put back: what the delays alone do.
-Eigen::VectorXd in_time(const Alignment& alignment,
-                        const Eigen::VectorXd& aligned,
-                        const Eigen::VectorXd& cross);
-
-/// Column t of `samples` (as in AlignmentData) aligned: n values. Saturated samples are missing.
-class Aligner {
- public:
-  explicit Aligner(const Alignment& alignment);
-  void column(const Eigen::MatrixXd& samples, Eigen::Index t, Eigen::VectorXd& out) const;
-  /// Makes samples at their limits missing.
-  void clip(Eigen::MatrixXd& samples) const;
-
- private:
-  const Alignment* alignment_;
-  std::vector<DelayTaps> taps_;
 };
 
 }  // namespace libchar::fusion

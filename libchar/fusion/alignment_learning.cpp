@@ -18,6 +18,7 @@
 
 #include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/fusion/aligner.hpp"
 #include "libchar/fusion/detail/alignment_samples.hpp"
 
 namespace libchar::fusion {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "libchar/fusion/alignment.hpp"
-#include "libchar/fusion/delay_taps.hpp"
 
 namespace libchar::fusion {
 

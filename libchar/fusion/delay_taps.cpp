@@ -10,7 +10,7 @@
 namespace libchar::fusion {
 namespace {
 
-constexpr Eigen::Index kHalf = 12;
+constexpr std::ptrdiff_t kHalf = 12;
 constexpr double kKaiser = 8;
 
 // Modified Bessel function of the first kind, order 0, by its series.
@@ -26,7 +26,7 @@ double bessel_0(double x) {
 std::vector<double> sinc_taps(double f) {
   std::vector<double> out;
   double sum = 0;
-  for (Eigen::Index k = 1 - kHalf; k <= kHalf; ++k) {
+  for (std::ptrdiff_t k = 1 - kHalf; k <= kHalf; ++k) {
     const double x = f - static_cast<double>(k), u = x / static_cast<double>(kHalf);
     const double angle = std::numbers::pi * x;
     const double sinc = x == 0 ? 1 : std::sin(angle) / angle;
@@ -47,7 +47,7 @@ std::vector<double> cubic_taps(double f) {
 }  // namespace
 
 DelayTaps::DelayTaps(double delay, Interpolation interpolation)
-    : floor(static_cast<Eigen::Index>(std::floor(delay))), fraction(delay - std::floor(delay)) {
+    : floor(static_cast<std::ptrdiff_t>(std::floor(delay))), fraction(delay - std::floor(delay)) {
   if (fraction == 0) {
     weights = {1};
   } else if (interpolation == Interpolation::cubic) {
@@ -59,13 +59,16 @@ DelayTaps::DelayTaps(double delay, Interpolation interpolation)
   }
 }
 
-double DelayTaps::at(
-    const double* y, Eigen::Index stride, Eigen::Index size, Eigen::Index t, bool strict) const {
-  const Eigen::Index place = t + floor, from = place + first;
-  const auto taps = static_cast<Eigen::Index>(weights.size());
+double DelayTaps::at(const double* y,
+                     std::ptrdiff_t stride,
+                     std::ptrdiff_t size,
+                     std::ptrdiff_t t,
+                     bool strict) const {
+  const std::ptrdiff_t place = t + floor, from = place + first;
+  const auto taps = static_cast<std::ptrdiff_t>(weights.size());
   if (from >= 0 && from + taps <= size) {
     double sum = 0;
-    for (Eigen::Index k = 0; k < taps; ++k)
+    for (std::ptrdiff_t k = 0; k < taps; ++k)
       sum += weights[static_cast<std::size_t>(k)] * y[(from + k) * stride];
     if (std::isfinite(sum)) return sum;
   }

@@ -1,7 +1,7 @@
 #pragma once
 // A sampled signal read between its instants.
 
-#include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 namespace libchar::fusion {
@@ -17,12 +17,12 @@ struct DelayTaps {
   /// y(t + delay), of `size` values. Where a tap is missing: linear between its neighbours, NaN
   /// where one of these is missing; `strict`: NaN.
   double at(const double* y,
-            Eigen::Index stride,
-            Eigen::Index size,
-            Eigen::Index t,
+            std::ptrdiff_t stride,
+            std::ptrdiff_t size,
+            std::ptrdiff_t t,
             bool strict = false) const;
   std::vector<double> weights;
-  Eigen::Index first = 0, floor = 0;
+  std::ptrdiff_t first = 0, floor = 0;
   double fraction = 0;
 };
 

@@ -44,20 +44,14 @@ void LearntExchange::number(std::string_view name, double& value) {
   value = values[0];
 }
 
-void LearntExchange::numbers(std::string_view name, Eigen::VectorXd& values) {
+void LearntExchange::numbers(std::string_view name, std::span<double> values) {
   if (!taking_in_) {
     learnt_.push_back({std::string(name), {values.begin(), values.end()}});
     return;
   }
   const std::vector<double>& found = find(name);
-  check(name, static_cast<std::size_t>(values.size()), found.size());
+  check(name, values.size(), found.size());
   std::copy(found.begin(), found.end(), values.begin());
-}
-
-void LearntExchange::numbers(std::string_view name, std::vector<double>& values) {
-  const std::size_t wanted = values.size();
-  list(name, values);
-  check(name, wanted, values.size());
 }
 
 void LearntExchange::list(std::string_view name, std::vector<double>& values) {

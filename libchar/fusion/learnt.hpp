@@ -1,7 +1,7 @@
 #pragma once
 // What an algorithm learnt from a reference, as numbers with names: enough to run elsewhere without it.
 
-#include <Eigen/Core>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +17,7 @@ using Learnt = std::vector<LearntNumbers>;
 /// Hands numbers out, or takes them in: one list of names serves both ways.
 ///
 ///   void exchange(LearntExchange& with) {   // of an algorithm
-///     with.numbers("weights", weights_);    // its length is known from the array
+///     with.numbers("weights", span_of(weights_));  // its length is known from the array
 ///     with.number("variance", variance_);
 ///     if (with.taking_in()) …               // what follows from them
 ///   }
@@ -34,8 +34,7 @@ class LearntExchange {
   bool taking_in() const { return taking_in_; }
   void number(std::string_view name, double& value);
   /// Throws Error(input) when another number of them is there.
-  void numbers(std::string_view name, Eigen::VectorXd& values);
-  void numbers(std::string_view name, std::vector<double>& values);
+  void numbers(std::string_view name, std::span<double> values);
   /// As many as there are.
   void list(std::string_view name, std::vector<double>& values);
   /// What counts samples means nothing at another rate: throws Error(input) when they differ by more

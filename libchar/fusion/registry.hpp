@@ -5,9 +5,13 @@
 #include <span>
 #include <string_view>
 
-#include "libchar/fusion/runner.hpp"
+#include "libchar/fusion/description.hpp"
+#include "libchar/fusion/options.hpp"
 
 namespace libchar::fusion {
+
+struct Array;
+class Runner;  // runner.hpp
 
 struct Entry {
   const Description* description;

@@ -16,7 +16,8 @@ struct Inspection {
   std::vector<ChannelQuality> quality;  ///< one a channel
 };
 
-/// Reads a log once, in constant memory. Of a log with several topics, none of which was chosen, it lists them (`is_listing`).
+/// Reads a log once, in constant memory. Of a log with several topics, none of which was chosen, it
+/// lists them (`is_listing`).
 Inspection inspect(const std::string& path,
                    const ReadOptions& options = {},
                    Progress& progress = no_progress());

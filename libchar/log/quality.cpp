@@ -24,8 +24,8 @@ constexpr std::size_t kBlock = 2048;  // stays in the first-level cache while it
 constexpr std::size_t kDistinct = 4096;
 constexpr std::uint64_t kSaturatedRun = 3;
 
-// The first kDistinct different values, in a table of open addressing that grows with them (a log of many channels and few rows needs
-// little); NaN marks an empty slot.
+// The first kDistinct different values, in a table of open addressing that grows with them (a log
+// of many channels and few rows needs little); NaN marks an empty slot.
 class DistinctValues {
  public:
   bool full() const { return values_.size() == kDistinct; }
@@ -59,9 +59,10 @@ class DistinctValues {
   std::vector<double> values_;
 };
 
-// Samples at one extreme (sign = +1: the maximum, -1: the minimum) and at the value next to it. It is an end of the range when three and
-// more stand in a row, and it has more than twice as many as its neighbour, which the tail of a coarsely rounded signal has not: then all
-// of them are saturated.
+// Samples at one extreme (sign = +1: the maximum, -1: the minimum) and at the value next to it. It
+// is an end of the range when three and more stand in a row, and it has more than twice as many as
+// its neighbour, which the tail of a coarsely rounded signal has not: then all of them are
+// saturated.
 struct Extreme {
   double sign = 1, value = -__builtin_inf(), next = -__builtin_inf();
   std::uint64_t run = 0, count = 0, at_next = 0;
@@ -490,8 +491,9 @@ struct QualityMeter::State {
   std::uint64_t pushed = 0;
   bool float32 = true;
   bool any_fraction = false;
-  // The sample before the block, then samples until the block is full; with it whether a sample does not follow the one before directly
-  // (missing samples between). Room for as many as came so far.
+  // The sample before the block, then samples until the block is full; with it whether a sample
+  // does not follow the one before directly (missing samples between). Room for as many as came so
+  // far.
   std::vector<double> held;
   std::vector<unsigned char> starts;
   std::size_t used = 0;
@@ -690,8 +692,8 @@ void suggest(ChannelQuality& q) {
 
 }  // namespace
 
-// Ends of a range are told from values that simply stand: of few levels, of a channel that stands most of the time wherever it is
-// (coarse steps, slow changes), of a counter or a clock.
+// Ends of a range are told from values that simply stand: of few levels, of a channel that stands
+// most of the time wherever it is (coarse steps, slow changes), of a counter or a clock.
 bool QualityMeter::State::may_saturate(std::size_t levels) const {
   constexpr std::size_t kFewLevels = 8;
   if (levels <= kFewLevels || !counter.sentence().empty()) return false;

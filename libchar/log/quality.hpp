@@ -22,8 +22,9 @@ struct ChannelQuality {
   std::optional<double>
       resolution;  ///< least step between distinct values (LSB), when the values lie on a grid
   std::uint64_t distinct_values = 0;  ///< counted up to 4096, then 4096
-  std::uint64_t saturated =
-      0;  ///< samples at the minimum or maximum, where three stand in a row and the value next to it has less than half as many
+  /// samples at the minimum or maximum, where three stand in a row and the value next to it has
+  /// less than half as many
+  std::uint64_t saturated = 0;
   std::uint64_t longest_stuck = 0;  ///< longest run of one value
   std::uint64_t at_minimum = 0, at_maximum = 0;
   std::uint64_t repeats = 0;       ///< samples that equal the one right before
@@ -48,8 +49,8 @@ class QualityMeter {
   void push(std::span<const double> samples);
   ChannelQuality finish() const;
 
-  /// The samples that `later` has seen follow directly: as if they had been pushed here, but for rounding, and for a counter, which
-  /// both parts must show.
+  /// The samples that `later` has seen follow directly: as if they had been pushed here, but for
+  /// rounding, and for a counter, which both parts must show.
   void join(const QualityMeter& later);
   void write_state(StateWriter& to) const;
   void read_state(StateReader& from);
@@ -59,7 +60,8 @@ class QualityMeter {
   std::unique_ptr<State> state_;
 };
 
-/// What of a channel's quality makes the recording doubtful for noise analysis, as warnings (read_recording and inspect).
+/// What of a channel's quality makes the recording doubtful for noise analysis, as warnings
+/// (read_recording and inspect).
 void quality_warnings(const Channel& channel, const ChannelQuality& quality, Warnings& warnings);
 
 /// The sampling rate. Throws Error(numeric) where it is not known.

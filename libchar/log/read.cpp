@@ -62,7 +62,8 @@ std::string front_of(const std::string& path) {
   return bytes;
 }
 
-// Of compressed files only text is read, whatever the name in front of ".gz" says; a name that says otherwise is refused.
+// Of compressed files only text is read, whatever the name in front of ".gz" says; a name that says
+// otherwise is refused.
 const Format& packed_format(const std::string& path) {
   const Format* const text = find_format("csv");
   const Format* const named = format_by_suffix(path.substr(0, path.rfind('.')));
@@ -75,8 +76,8 @@ const Format& packed_format(const std::string& path) {
                "unpack it first: gunzip, unzstd or unxz"});
 }
 
-// A magic number decides before the name, and the name before what else the content looks like: a .csv that holds something else is
-// told so by the CSV reader.
+// A magic number decides before the name, and the name before what else the content looks like: a
+// .csv that holds something else is told so by the CSV reader.
 const Format& format_of(const std::string& path, const ReadOptions& options) {
   if (options.format != "auto") {
     if (const Format* format = find_format(options.format)) return *format;
@@ -161,7 +162,8 @@ std::optional<std::string> value_for(const std::vector<std::string>& words,
 using ScaleNotes =
     std::map<std::string, std::vector<std::string>>;  // what was done, to which channels
 
-// Counts become values: by `channel_scale`, else by a number in the unit. Returns the factors, and says in `notes` what was done.
+// Counts become values: by `channel_scale`, else by a number in the unit. Returns the factors, and
+// says in `notes` what was done.
 std::vector<double> scale_channels(std::vector<Channel>& channels,
                                    const ReadOptions& options,
                                    ScaleNotes* notes) {

@@ -18,8 +18,9 @@ struct ReadOptions {
       channels;  ///< names (or c0, c1…) to read; empty = all. Unknown name: Error(usage) naming the nearest
   std::string
       topic;  ///< of a log with several streams, the one to read; "" = the one that `channels` name, or the only one
-  std::string time_source =
-      "auto";  ///< whose stamps, where messages have several: "auto", "header" (the sensor's), "log" (when recorded), "publish"
+  /// whose stamps, where messages have several: "auto", "header" (the sensor's), "log" (when
+  /// recorded), "publish"
+  std::string time_source = "auto";
   std::vector<std::string>
       names;  ///< new names of the channels read, in order; empty = as in the log
   std::vector<std::string>
@@ -85,10 +86,11 @@ struct ChannelRange {
   bool has(std::size_t channel) const { return first <= channel && channel < end; }
 };
 
-/// Rows first … end-1 of a log without stamps whose rows stand at fixed places (.npy, raw binary), a sample each; nothing in front of
-/// them is read. Of channels out of the range the sink gets no samples of the log but any numbers; what has to be said of the log, and
-/// not of a channel, is said with the first. `from_s` and `to_s` do not count, no digest is taken, and whether a channel has any value
-/// is not asked. Throws Error(usage) where rows have no fixed places or stamps.
+/// Rows first … end-1 of a log without stamps whose rows stand at fixed places (.npy, raw binary),
+/// a sample each; nothing in front of them is read. Of channels out of the range the sink gets no
+/// samples of the log but any numbers; what has to be said of the log, and not of a channel, is
+/// said with the first. `from_s` and `to_s` do not count, no digest is taken, and whether a channel
+/// has any value is not asked. Throws Error(usage) where rows have no fixed places or stamps.
 LogInfo read_rows(const std::string& path,
                   const ReadOptions& options,
                   std::uint64_t first,
@@ -115,11 +117,13 @@ StampedRows read_stamped_rows(const std::string& path,
 /// File, format and topics of a log, without reading its samples; no topics for formats of one table.
 LogInfo log_listing(const std::string& path, const ReadOptions& options);
 
-/// Standard input, a named pipe, a device: what was read is gone, and only CSV is read from it unless the format is given.
+/// Standard input, a named pipe, a device: what was read is gone, and only CSV is read from it
+/// unless the format is given.
 bool read_once(const std::string& path);
 
-/// Threads for what a sink does with its blocks: `threads`, or (0) all cores, less the one that reading ahead keeps busy. More would
-/// take turns with it, and its hash is one long chain that all others wait for in the end.
+/// Threads for what a sink does with its blocks: `threads`, or (0) all cores, less the one that
+/// reading ahead keeps busy. More would take turns with it, and its hash is one long chain that all
+/// others wait for in the end.
 int threads_beside_reading(const LogInfo& log, int threads);
 
 /// The same, whole, in memory.

@@ -1,6 +1,6 @@
 #pragma once
-// What a document says about the recordings it comes from: one description for every verb. Keys may be added; none changes
-// its meaning or goes.
+// What a document says about the recordings it comes from: one description for every verb. Keys may
+// be added; none changes its meaning or goes.
 
 #include <string>
 #include <string_view>

@@ -35,8 +35,8 @@ class LogWriter {
   /// What only the end of reading knew better (the rate); before finish(). CSV has written its
   /// stamps by then and keeps them.
   virtual void refine(const LogInfo& info) { static_cast<void>(info); }
-  /// Everything but the names: what is left to write is written. The files, the log first, which last as long as the writer: for who
-  /// commits them together with others.
+  /// Everything but the names: what is left to write is written. The files, the log first, which
+  /// last as long as the writer: for who commits them together with others.
   virtual std::vector<WholeFile*> complete() = 0;
   /// Completes the file (and its sidecar) and gives it its name.
   void finish() { commit_together(complete()); }
@@ -53,7 +53,8 @@ std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
                                            const LogInfo& info,
                                            const WriteOptions& options = {});
 
-/// Throws what opening the writer would for the name, the options and the files that are there, before any work; leaves nothing behind.
+/// Throws what opening the writer would for the name, the options and the files that are there,
+/// before any work; leaves nothing behind.
 void check_log_output(const std::string& path, const WriteOptions& options);
 
 /// The format that `path` and `options` ask for.

@@ -48,13 +48,15 @@ struct ChannelLimit {
 const Fields<NoiseLimits>& limits_fields();
 const Fields<LimitBlock>& limit_block_fields();
 
-/// Reads `format: noise-limits`, `version: 1`, YAML or JSON. Throws Error(input) with place, key and the nearest valid key.
+/// Reads `format: noise-limits`, `version: 1`, YAML or JSON. Throws Error(input) with place, key
+/// and the nearest valid key.
 NoiseLimits parse_limits(std::string_view text, const std::string& file);
 /// The same from a file: at most 16 MiB, a regular file.
 NoiseLimits read_limits_file(const std::string& path);
 
-/// The limits that hold for these channels, by channel and term. Throws Error(input) with its place for a name or a kind that
-/// none of the channels has, a unit that does not fit a channel's, and a term of a channel that is limited twice.
+/// The limits that hold for these channels, by channel and term. Throws Error(input) with its place
+/// for a name or a kind that none of the channels has, a unit that does not fit a channel's, and a
+/// term of a channel that is limited twice.
 std::vector<ChannelLimit> limits_for(const NoiseLimits& limits,
                                      const std::vector<NamedChannel>& channels);
 

@@ -39,8 +39,8 @@ struct Nonlinearity {
   bool operator==(const Nonlinearity&) const = default;
 };
 
-/// Block 3: beta = N(value, spread) + tc1 dT + tc2 dT^2 + tc3 dT^3, drawn once a device; all in U. dT is that of a first-order lag behind
-/// the temperature where there is one.
+/// Block 3: beta = N(value, spread) + tc1 dT + tc2 dT^2 + tc3 dT^3, drawn once a device; all in U.
+/// dT is that of a first-order lag behind the temperature where there is one.
 struct Bias {
   double value = 0;
   double spread = 0;
@@ -71,8 +71,8 @@ enum class NoiseStart {
   zero,        ///< it starts at the first sample, as published [RV app. A]
 };
 
-/// What was no noise in the recording that the model is from: a mean with a sign, at an instant of that recording. A simulation has it only
-/// when asked.
+/// What was no noise in the recording that the model is from: a mean with a sign, at an instant of
+/// that recording. A simulation has it only when asked.
 struct DeterministicTerm {
   enum class Kind { step, warm_up, ramp };
   Kind kind = Kind::step;

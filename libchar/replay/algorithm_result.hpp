@@ -1,7 +1,6 @@
 #pragma once
 // What one algorithm did on a run: errors, costs, weights, the faults that it found.
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,7 +9,8 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/warnings.hpp"
-#include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/description.hpp"
+#include "libchar/fusion/options.hpp"
 #include "libchar/replay/error_meter.hpp"
 #include "libchar/replay/fault_answers.hpp"
 #include "libchar/replay/timeline.hpp"
@@ -69,8 +69,9 @@ struct AlgorithmResult {
   double learning_s = 0;     ///< making it and its learning, CPU of one core
   std::optional<std::uint64_t> peak_bytes;  ///< of heap, over learning and run; none: not measured
 
-  std::optional<Eigen::MatrixXd> weights;    ///< n x r at the end
-  std::optional<Eigen::VectorXd> variances;  ///< at the end
+  /// at the end: of each input, one per sensor; empty: not known
+  std::vector<std::vector<double>> weights;
+  std::vector<double> variances;  ///< at the end, one per sensor; empty: not known
   double weight_distance =
       0;  ///< RMS over time of |w - optimal weights| (Euclid), one input; NaN: unknown
   double variance_error =

@@ -10,7 +10,8 @@
 
 namespace libchar {
 
-/// Metrics: rmse, regret (by so many points, as it is a share itself), ns_per_sample, peak_bytes; labels are of algorithms.
+/// Metrics: rmse, regret (by so many points, as it is a share itself), ns_per_sample, peak_bytes;
+/// labels are of algorithms.
 using ComparisonCheck = GrowthCheck;
 
 /// "[LABEL:]METRIC+NUMBER%". Throws Error(usage) with the nearest metric.

@@ -1,7 +1,7 @@
 // RMSE = sqrt(sum e^2 / n). ln RMSE is half the logarithm of a mean of squares, so a cell of n_k samples moves it by
 //   z_k = (sum e^2 - n_k RMSE^2) K / (2 n RMSE^2),   the mean of z over the K cells is 0;
-// how well that mean is known (detail/mean_uncertainty.hpp) is how well ln RMSE is. For ratios it is the difference of two such series:
-// what both errors have in common cancels.
+// how well that mean is known (detail/mean_uncertainty.hpp) is how well ln RMSE is. For ratios it
+// is the difference of two such series: what both errors have in common cancels.
 #include "libchar/replay/error_meter.hpp"
 
 #include <algorithm>
@@ -104,7 +104,8 @@ void add_intervals(const ErrorMeter& meter, const ScoreOptions& options, ErrorSc
   const double slope = slow_slope(means);
   out.stationary = !(spread.long_memory && slope > kWalks);
   if (!out.stationary) return;
-  // The square of the record's own mean is one draw, with one degree of freedom, of what others have: no batch of it shows that.
+  // The square of the record's own mean is one draw, with one degree of freedom, of what others
+  // have: no batch of it shows that.
   const double offset = bias.long_memory && slope > kNeverEnds
                             ? bias.reach95 * bias.reach95 / (2 * out.rmse * out.rmse)
                             : 0;

@@ -50,40 +50,44 @@ struct ErrorScore {
   std::uint64_t samples = 0;
   double converged_s =
       0;  ///< from here on the RMS of a window is within a tenth of its final level; NaN: never
-  /// false: the error walks or drifts over the record, so that another stretch may have any other; then there are no intervals
+  /// false: the error walks or drifts over the record, so that another stretch may have any other;
+  /// then there are no intervals
   bool stationary = true;
 };
 
 struct ScoreOptions {
   bool intervals = true;
-  /// first samples of stretches that are known to differ (a sensor fails, or comes back), rising: intervals are about records with the
-  /// same stretches
+  /// first samples of stretches that are known to differ (a sensor fails, or comes back), rising:
+  /// intervals are about records with the same stretches
   std::vector<std::int64_t> sections = {};
 };
 
-/// All scores of one estimate. Intervals from the scatter of batch means, extended to the whole record (detail/mean_uncertainty.hpp).
+/// All scores of one estimate. Intervals from the scatter of batch means, extended to the whole
+/// record (detail/mean_uncertainty.hpp).
 ErrorScore score(const ErrorMeter& meter, double rate_hz, const ScoreOptions& options = {});
 
 /// Errors that are judged together: one, or one for each sensor.
 using Meters = std::vector<const ErrorMeter*>;
 
-/// Geometric mean of the root mean squares, so that none counts for more because it is larger (the Gaussian predictive likelihood of all,
-/// each with a variance of its own), and its 95 % interval.
+/// Geometric mean of the root mean squares, so that none counts for more because it is larger (the
+/// Gaussian predictive likelihood of all, each with a variance of its own), and its 95 % interval.
 struct GeometricRms {
   double rms = 0;
   Interval ci95;
 };
 GeometricRms geometric_rms(const Meters& meters, const ScoreOptions& options = {});
 
-/// Interval of the ratio of the geometric means (RMSE_a / RMSE_b of one meter each), from what both saw at the same time (equally long
-/// meters). `level`: share of such intervals that miss. Contains 1: the difference is not resolved.
+/// Interval of the ratio of the geometric means (RMSE_a / RMSE_b of one meter each), from what both
+/// saw at the same time (equally long meters). `level`: share of such intervals that miss. Contains
+/// 1: the difference is not resolved.
 Interval rms_ratio_interval(const Meters& a,
                             const Meters& b,
                             const ScoreOptions& options = {},
                             double level = 0.05);
 
-/// Sign test: how probable it is by chance that a's errors are the larger ones in so many of sixteen equal stretches of the record. It
-/// says something where a few huge errors hide every difference from the ratio of root mean squares. 1: nothing to compare.
+/// Sign test: how probable it is by chance that a's errors are the larger ones in so many of
+/// sixteen equal stretches of the record. It says something where a few huge errors hide every
+/// difference from the ratio of root mean squares. 1: nothing to compare.
 double larger_throughout(const Meters& a, const Meters& b);
 
 }  // namespace libchar

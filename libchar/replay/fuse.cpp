@@ -14,6 +14,7 @@
 #include "libchar/core/units.hpp"
 #include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/replay/detail/instants.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"

@@ -61,7 +61,8 @@ struct ReplayResult {
   std::vector<DetectionAt> detection;
   std::vector<AlgorithmResult> algorithms;  ///< in the order of the table
   std::optional<std::size_t> best;          ///< of the methods (no bounds) by `rmse`
-  /// the sensor with the smallest error, and the 95 % interval of the best method's RMSE over its; one input and a reference
+  /// the sensor with the smallest error, and the 95 % interval of the best method's RMSE over its;
+  /// one input and a reference
   std::optional<std::size_t> best_sensor;
   std::optional<Interval> best_over_sensor;
   /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen

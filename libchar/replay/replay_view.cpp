@@ -98,28 +98,26 @@ InputView input_view(const ReplayView& view, std::size_t input) {
 void add_final_weights(std::vector<FinalRow>& out,
                        const ReplayResult& r,
                        const AlgorithmResult& a) {
-  for (Eigen::Index j = 0; j < a.weights->cols(); ++j) {
-    const bool named = a.weights->cols() > 1 && j < static_cast<Eigen::Index>(r.inputs.size());
-    const auto column = a.weights->col(j);
-    out.push_back(
-        {a.label + ": weights" + (named ? " of " + r.inputs[static_cast<std::size_t>(j)].name : ""),
-         {column.begin(), column.end()},
-         j == 0 && a.weight_distance > 0 ? a.weight_distance : kNone});
+  for (std::size_t j = 0; j < a.weights.size(); ++j) {
+    const bool named = a.weights.size() > 1 && j < r.inputs.size();
+    out.push_back({a.label + ": weights" + (named ? " of " + r.inputs[j].name : ""),
+                   a.weights[j],
+                   j == 0 && a.weight_distance > 0 ? a.weight_distance : kNone});
   }
 }
 
 void add_final_variances(std::vector<FinalRow>& out, const AlgorithmResult& a) {
   FinalRow row{
       a.label + ": standard deviations", {}, a.variance_error > 0 ? a.variance_error : kNone};
-  for (const double v : *a.variances) row.values.push_back(v >= 0 ? std::sqrt(v) : kNone);
+  for (const double v : a.variances) row.values.push_back(v >= 0 ? std::sqrt(v) : kNone);
   out.push_back(std::move(row));
 }
 
 std::vector<FinalRow> final_rows(const ReplayView& view) {
   std::vector<FinalRow> out;
   for (const AlgorithmView* a : view.ranked) {
-    if (a->result->weights) add_final_weights(out, *view.result, *a->result);
-    if (a->result->variances) add_final_variances(out, *a->result);
+    add_final_weights(out, *view.result, *a->result);
+    if (!a->result->variances.empty()) add_final_variances(out, *a->result);
   }
   return out;
 }
@@ -166,8 +164,8 @@ ReplayFigures figures_of(const ReplayResult& r) {
   out.error_over_time = any([](const auto& a) { return a.rmse > 0 && a.ns_per_sample > 0; });
   out.error_over_memory =
       any([](const auto& a) { return a.rmse > 0 && a.peak_bytes.value_or(0) > 0; });
-  out.weights = any([](const auto& a) { return a.weights && a.weights->cols() == 1; });
-  out.variances = any([](const auto& a) { return a.variances.has_value(); });
+  out.weights = any([](const auto& a) { return a.weights.size() == 1; });
+  out.variances = any([](const auto& a) { return !a.variances.empty(); });
   out.faults = !r.faults.empty() || any([](const auto& a) { return !a.faults.empty(); });
   out.detection = std::any_of(r.detection.begin(), r.detection.end(), [](const DetectionAt& at) {
     return std::any_of(at.answers.begin(), at.answers.end(), [](const auto& one) {

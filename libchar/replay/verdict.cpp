@@ -27,7 +27,8 @@ bool learns(const AlgorithmResult& a) {
   return a.description->needs.reference;
 }
 
-// The cheapest of those that cannot be told from the best; where the record tells little, not one whose error is clearly larger in it.
+// The cheapest of those that cannot be told from the best; where the record tells little, not one
+// whose error is clearly larger in it.
 const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
   const AlgorithmResult* out = nullptr;
   for (const AlgorithmResult& a : r.algorithms)

@@ -38,24 +38,16 @@ Json window(const TimeWindow& w) {
 }
 
 // One input: a flat list; several: a row a sensor.
-Json weights_json(const std::optional<Eigen::MatrixXd>& weights) {
-  if (!weights) return nullptr;
+Json weights_json(const std::vector<std::vector<double>>& weights) {
+  if (weights.empty()) return nullptr;
+  if (weights.size() == 1) return numbers(weights[0]);
   Json out = Json::array();
-  for (Eigen::Index i = 0; i < weights->rows(); ++i) {
-    if (weights->cols() == 1) {
-      out.push_back(json_number((*weights)(i, 0)));
-      continue;
-    }
+  for (std::size_t i = 0; i < weights[0].size(); ++i) {
     Json row = Json::array();
-    for (Eigen::Index j = 0; j < weights->cols(); ++j) row.push_back(json_number((*weights)(i, j)));
+    for (const std::vector<double>& of_input : weights) row.push_back(json_number(of_input[i]));
     out.push_back(std::move(row));
   }
   return out;
-}
-
-Json variances_json(const std::optional<Eigen::VectorXd>& variances) {
-  if (!variances) return nullptr;
-  return numbers({variances->begin(), variances->end()});
 }
 
 // Tracks are looked at: six digits, or they would be most of the file.
@@ -263,7 +255,7 @@ Json algorithm_json(const ReplayResult& result, const AlgorithmView& view) {
       {"learning_s", a.ran ? json_number(a.learning_s) : Json(nullptr)},
       {"peak_bytes", a.peak_bytes ? Json(*a.peak_bytes) : Json(nullptr)},
       {"weights", weights_json(a.weights)},
-      {"variances", variances_json(a.variances)},
+      {"variances", a.variances.empty() ? Json(nullptr) : numbers(a.variances)},
       {"faults", faults_json(result, a)},
       {"faults_not_kept", a.faults_not_kept},
       {"watches_faults", a.watches_faults},

@@ -85,11 +85,12 @@ struct SimulatedFrom {
   std::uint64_t oversampling = 1;  ///< says how much noise its models gave a sample
   bool truth_columns = true;       ///< the log has those of the true inputs and of the temperature
   bool deterministic = false;      ///< with the steps, warm-ups and ramps of the models' recordings
-  /// Weights of the true inputs, sensor after sensor, where the scene's rows h are others: its reference names some inputs only.
+  /// Weights of the true inputs, sensor after sensor, where the scene's rows h are others: its
+  /// reference names some inputs only.
   std::vector<double> rows;
   std::vector<std::string> command;  ///< that simulated it, without the program; for people
-  /// The whole simulation, which makes the log again. Empty in older scenes, and where a true input comes from a log that nobody
-  /// asked to read.
+  /// The whole simulation, which makes the log again. Empty in older scenes, and where a true input
+  /// comes from a log that nobody asked to read.
   std::optional<ArraySimulation> simulation;
 };
 

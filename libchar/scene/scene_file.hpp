@@ -19,8 +19,8 @@ struct SceneReadOptions {
 /// key.
 Scene read_scene_file(const std::string& path, const SceneReadOptions& options = {});
 
-/// Is this meant as a scene? By its suffix (.yaml, .yml, .json), or a line `format: scene` among its first bytes. Else it is a
-/// log. Reads no more than 4 KiB; false for what cannot be opened.
+/// Is this meant as a scene? By its suffix (.yaml, .yml, .json), or a line `format: scene` among
+/// its first bytes. Else it is a log. Reads no more than 4 KiB; false for what cannot be opened.
 bool looks_like_scene(const std::string& path);
 
 /// Does this file say `format: scene`? Else it is something else that simulates, such as a model.

@@ -19,9 +19,10 @@ struct SimulatedLog {
   std::size_t channels = 0;        ///< of the log
 };
 
-/// Streams the simulation into `recording.file`, in constant memory, and writes the scene that replays it; no `scene_file`: the log
-/// alone. What `original` says of a replay is kept. Both files are there, or neither. Throws as check(ArraySimulation) and
-/// open_log_writer, and Error(usage) where a channel has the name of another column.
+/// Streams the simulation into `recording.file`, in constant memory, and writes the scene that
+/// replays it; no `scene_file`: the log alone. What `original` says of a replay is kept. Both files
+/// are there, or neither. Throws as check(ArraySimulation) and open_log_writer, and Error(usage)
+/// where a channel has the name of another column.
 SimulatedLog simulate_log(const ArraySimulation& simulation,
                           const SimulatedRecording& recording,
                           const Scene& original = {},

@@ -1,7 +1,8 @@
 // P_xy = 1/K sum_i conj(X_i) Y_i, scaled as Welch's density, and the magnitude-squared coherence |P_xy|^2 / (P_xx P_yy)
-// (J. S. Bendat, A. G. Piersol, Random Data, 4th ed. 2010, 9.2; G. C. Carter, Proc. IEEE 75 (1987) 236). Of independent channels it is
-// beta(1, K - 1) distributed: mean 1/K, below 1 - a^(1/(K-1)) with probability 1 - a. K is the number of independent segments, half the degrees
-// of freedom of the average. Groups of segments are added in order, so that the number of threads changes no bit.
+// (J. S. Bendat, A. G. Piersol, Random Data, 4th ed. 2010, 9.2; G. C. Carter, Proc. IEEE 75 (1987)
+// 236). Of independent channels it is beta(1, K - 1) distributed: mean 1/K, below 1 - a^(1/(K-1))
+// with probability 1 - a. K is the number of independent segments, half the degrees of freedom of
+// the average. Groups of segments are added in order, so that the number of threads changes no bit.
 
 #include "libchar/spectrum/cross_spectrum.hpp"
 

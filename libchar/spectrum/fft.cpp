@@ -345,8 +345,8 @@ std::span<const double> Dct::transform(std::span<const double> y) {
   return {c, n};
 }
 
-// c_k sin(pi k t / n) is twice the real part of (-i c_k / 2) exp(2 pi i k t / 2n): one real transform of 2n values, as FFTW's own
-// RODFT00 does it, which takes long to plan.
+// c_k sin(pi k t / n) is twice the real part of (-i c_k / 2) exp(2 pi i k t / 2n): one real
+// transform of 2n values, as FFTW's own RODFT00 does it, which takes long to plan.
 struct SineSums::State {
   explicit State(std::size_t n) : values(n), fft(2 * n) {}
   std::vector<double> values;

@@ -1,6 +1,7 @@
 #pragma once
-// FFTW behind a few small classes; nothing beside them includes fftw3.h. Plans are FFTW_ESTIMATE (same bits every run), created under
-// one mutex, kept for the next of their length, and run on aligned buffers owned by the object.
+// FFTW behind a few small classes; nothing beside them includes fftw3.h. Plans are FFTW_ESTIMATE
+// (same bits every run), created under one mutex, kept for the next of their length, and run on
+// aligned buffers owned by the object.
 
 #include <complex>
 #include <cstddef>

@@ -29,7 +29,8 @@ using namespace welch_detail;
 
 namespace {
 
-// Samples of a segment from which on its transforms take as much memory as the record, and time that one thread would need alone.
+// Samples of a segment from which on its transforms take as much memory as the record, and time
+// that one thread would need alone.
 constexpr std::uint64_t kLongSegment = std::uint64_t{1} << 21U;
 
 struct Group {

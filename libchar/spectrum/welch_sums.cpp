@@ -1,10 +1,11 @@
-// Segments of n samples start at 0, D, 2D, … (detail/segments.cpp). Parts A and B of a record, A a multiple of D long: the segments
-// of both are those within A, those within B, and those that start in A and end in B,
+// Segments of n samples start at 0, D, 2D, … (detail/segments.cpp). Parts A and B of a record, A a
+// multiple of D long: the segments of both are those within A, those within B, and those that start
+// in A and end in B,
 //
 //   x[a - n + D .. ), x[a - n + 2 D .. ), …, x[a - D .. )        a samples in A,
 //
-// which stand in the last n - D samples of A and the first n - D of B. Sums of powers, and counts of pairs of segments by their
-// distance, are added.
+// which stand in the last n - D samples of A and the first n - D of B. Sums of powers, and counts
+// of pairs of segments by their distance, are added.
 
 #include "libchar/spectrum/welch_sums.hpp"
 

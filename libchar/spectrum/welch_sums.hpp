@@ -24,8 +24,8 @@ struct WelchSums {
   bool moves = false, moves_little = false;                 ///< do others differ from it
 };
 
-/// Takes parts of a record and joins them. Parts begin at whole hops: all but the last are a multiple of a hop long, and not shorter
-/// than a segment less a hop.
+/// Takes parts of a record and joins them. Parts begin at whole hops: all but the last are a
+/// multiple of a hop long, and not shorter than a segment less a hop.
 class WelchParts {
  public:
   /// `options.segment` > 0. `workspace`: shared with others, and must live as long.
@@ -41,7 +41,8 @@ class WelchParts {
   std::uint64_t shared_length() const;
   /// One part. `taker`: gets its samples, blocks of `shared_length` among them; none: nobody does.
   WelchSums take(std::span<const double> part, BlockTaker* taker = nullptr) const;
-  /// Adds the part that follows directly (WelchStream makes a spectrum of the sums), and the segments that straddle the boundary.
+  /// Adds the part that follows directly (WelchStream makes a spectrum of the sums), and the
+  /// segments that straddle the boundary.
   void join(WelchSums& sums, const WelchSums& later);
 
   static void write_state(const WelchSums& sums, StateWriter& to);

@@ -289,7 +289,8 @@ TEST_CASE("offset 1e9 sigma and strong drift, against 113 bits") {
 }
 
 TEST_CASE("records that end where a block of the phase does, and a sample beside it") {
-  // 8191 samples have 8192 points of the phase: a third block begins behind the last sample. Read there, garbage and a broken heap came.
+  // 8191 samples have 8192 points of the phase: a third block begins behind the last sample. Read
+  // there, garbage and a broken heap came.
   for (const std::size_t whole : {4096U, 8192U, 12288U})
     for (const std::size_t n : {whole - 2, whole - 1, whole, whole + 1}) {
       const std::vector<double> y = white(n, 11, 3.0);

@@ -162,7 +162,8 @@ TEST_CASE("pyramid scales bit-exactly by powers of two and survives extremes") {
 }
 
 TEST_CASE("pyramid counts what is missing at the end of a block of every level") {
-  // One sample is missing, and the terms that reach across the end of its block are means of fewer: at each level, its last places.
+  // One sample is missing, and the terms that reach across the end of its block are means of fewer:
+  // at each level, its last places.
   for (const std::size_t gap : {4093UL, 8188UL, 8191UL, 16376UL, 16383UL, 32767UL}) {
     auto y = noise(40000, unsigned(gap), 5);
     y[gap] = std::nan("");

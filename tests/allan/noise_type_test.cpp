@@ -1,4 +1,5 @@
-// The power law of a clock's noise by its lag-1 autocorrelation: five kinds of known noise, and what Stable32 says of two clocks.
+// The power law of a clock's noise by its lag-1 autocorrelation: five kinds of known noise, and
+// what Stable32 says of two clocks.
 #include "libchar/allan/noise_type.hpp"
 
 #include <catch2/catch.hpp>

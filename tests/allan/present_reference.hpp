@@ -1,6 +1,7 @@
 #pragma once
-// Allan and Hadamard variances of a record with missing samples, term by term: means over what is present of windows more than half
-// there, less what the missing samples add, octave by octave (docs/theory/allan.md). No running sums, nothing shared with the library.
+// Allan and Hadamard variances of a record with missing samples, term by term: means over what is
+// present of windows more than half there, less what the missing samples add, octave by octave
+// (docs/theory/allan.md). No running sums, nothing shared with the library.
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,5 @@
-"""What alignment brings on recorded arrays: leave-one-out RMS of the mean, aligned ÷ as recorded (docs/theory/alignment.md).
+"""What alignment brings on recorded arrays: leave-one-out RMS of the mean, aligned ÷ as recorded
+(docs/theory/alignment.md).
 
 usage: align_bench.py SENSORCHAR
 The scenes read recordings beside the checkout (fixtures/scenes/real/README.md).
@@ -17,7 +18,8 @@ ROWS += [(f"DOT second half, {axis}", f"dot-gyro-{axis}-aligned", []) for axis i
 
 def run(program, scene, options):
     with tempfile.TemporaryDirectory() as out:
-        subprocess.run([program, "replay", SCENES / f"{scene}.yaml", "--allow-outside", "--algorithms", "mean", "-o", out, *options],
+        subprocess.run([program, "replay", SCENES / f"{scene}.yaml", "--allow-outside", "--algorithms", "mean", "-o",
+                        out, *options],
                        check=True, capture_output=True)
         return json.loads((pathlib.Path(out) / "report.json").read_text())["alignment"]["budget"]
 

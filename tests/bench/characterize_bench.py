@@ -1,4 +1,5 @@
-"""Speed and memory of `sensorchar characterize` against the Python pipeline (python_pipeline.py), interleaved in one run.
+"""Speed and memory of `sensorchar characterize` against the Python pipeline (python_pipeline.py), interleaved
+in one run.
 
     python3 tests/bench/characterize_bench.py [--build build] [--rows 10000000] [--rounds 3] [--segment 65536|0]
 
@@ -40,9 +41,11 @@ try:
     log = options.log or str(folder / "log.csv")
     if not options.log:
         subprocess.run([f"{options.build}/tests/bench/make_log_bench", log, str(options.rows)], check=True)
-    print(f"log: {os.path.getsize(log) / 1e9:.2f} GB, segment {options.segment or 'N/4'}, {options.rounds} interleaved rounds")
+    print(f"log: {os.path.getsize(log) / 1e9:.2f} GB, segment {options.segment or 'N/4'}, {options.rounds} "
+          f"interleaved rounds")
     segment = [] if options.segment == 0 else ["--segment", str(options.segment)]
-    ours = [f"{options.build}/tools/sensorchar", "characterize", log, "-o", str(folder / "out"), "--force", "--quiet", *segment]
+    ours = [f"{options.build}/tools/sensorchar", "characterize", log, "-o", str(folder / "out"), "--force",
+            "--quiet", *segment]
     theirs = ["/usr/bin/python3", str(here / "python_pipeline.py"), log, str(options.segment)]
     results = {"sensorchar": [], "python": []}
     for _ in range(options.rounds):
@@ -54,6 +57,7 @@ try:
         print(f"{name:12}{wall:10.2f}{cpu:10.2f}{peak:10.0f}")
     ratios = [[p[i] / o[i] for o, p in zip(results["sensorchar"], results["python"])] for i in range(2)]
     for what, ratio in zip(("wall", "cpu"), ratios):
-        print(f"{what} ratio python / sensorchar: median {statistics.median(ratio):.1f} (from {min(ratio):.1f} to {max(ratio):.1f})")
+        print(f"{what} ratio python / sensorchar: median {statistics.median(ratio):.1f} (from {min(ratio):.1f} to "
+              f"{max(ratio):.1f})")
 finally:
     shutil.rmtree(folder)

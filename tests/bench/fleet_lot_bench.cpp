@@ -1,7 +1,9 @@
-// How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a hundred thousand
-// devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtznks: coverage, batches, differences of two lots,
-// temperatures, zone rules of charts, what is not detected, terms beside a random walk that is not, squares against their information] [FOLDER]
-// With a folder: a fleet of that many devices with all of its results is written there, for `sensorchar fleet merge` to be measured.
+// How often a lot's intervals cover, how often devices, batches and lots that are alike are called
+// unlike, and what a hundred thousand devices take. Usage: fleet_lot_bench [lots = 2000] [devices =
+// 100000] [parts = cbdtznks: coverage, batches, differences of two lots, temperatures, zone rules
+// of charts, what is not detected, terms beside a random walk that is not, squares against their
+// information] [FOLDER] With a folder: a fleet of that many devices with all of its results is
+// written there, for `sensorchar fleet merge` to be measured.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -206,7 +208,8 @@ void charts(std::size_t values, int count) {
   }
 }
 
-/// Fits of records of 8192 samples of white noise with a second term, as devices of a lot of this mean and spread have them.
+/// Fits of records of 8192 samples of white noise with a second term, as devices of a lot of this
+/// mean and spread have them.
 std::vector<Coefficient> fits_of_lot(Term term, double mean, double spread, std::size_t count) {
   constexpr std::size_t kSamples = 8192, kChunk = 50;
   const bool walk = term == Term::walk;
@@ -357,7 +360,8 @@ RecordedChannel channel_of_fit(const NoiseFit& fit, double own) {
   return out;
 }
 
-/// Lots of fits of three terms: does the mean of one hold the truth whose neighbour is there and not detected in most of them?
+/// Lots of fits of three terms: does the mean of one hold the truth whose neighbour is there and
+/// not detected in most of them?
 void neighbour_lots(double walk, int lots) {
   constexpr double kTruth[] = {5e-3, 4e-3};
   const std::vector<NoiseFit> fits = neighbour_fits(walk, 4000);

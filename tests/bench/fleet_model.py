@@ -4,10 +4,11 @@
 usage: fleet_model.py [--devices N] [--unit-s S] [--unit-cv C] [--unit-mb M] [--job-s S] [--start-s S] [--dispatch-s S]
                       [--storage-mb-s B] [--plan-s S] [--merge-s S] [--seed K]
 
-A job holds as many units as its length allows. A worker that is free takes the next job; the engine starts one job after the other
-(--dispatch-s each), a job takes --start-s and its units' seconds (log-normal, mean --unit-s, coefficient of variation --unit-cv), and
-reads its units' bytes from a storage that all workers share in equal parts (--storage-mb-s). Planning and merging are one process each,
---plan-s and --merge-s a device. Prints a row for each number of workers: time, speed-up, efficiency, and which part it is.
+A job holds as many units as its length allows. A worker that is free takes the next job; the engine starts
+one job after the other (--dispatch-s each), a job takes --start-s and its units' seconds (log-normal, mean
+--unit-s, coefficient of variation --unit-cv), and reads its units' bytes from a storage that all workers
+share in equal parts (--storage-mb-s). Planning and merging are one process each, --plan-s and --merge-s a
+device. Prints a row for each number of workers: time, speed-up, efficiency, and which part it is.
 """
 
 import argparse
@@ -61,7 +62,8 @@ def what_holds(jobs, workers, options, total):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name, value in (("unit-s", 0.15), ("unit-cv", 0.2), ("unit-mb", 0.4), ("job-s", 60), ("start-s", 0.1), ("dispatch-s", 0.05),
+    for name, value in (("unit-s", 0.15), ("unit-cv", 0.2), ("unit-mb", 0.4), ("job-s", 60), ("start-s", 0.1),
+                        ("dispatch-s", 0.05),
                         ("storage-mb-s", 2000), ("plan-s", 0.001), ("merge-s", 0.0005)):
         parser.add_argument("--" + name, type=float, default=value)
     parser.add_argument("--devices", type=int, default=2000)
@@ -74,7 +76,8 @@ def main():
     print("| workers | time, s | speed-up | efficiency | held by |\n|---:|---:|---:|---:|---|")
     for workers in WORKERS:
         time = makespan(jobs, workers, options) + serial
-        print(f"| {workers} | {time:.1f} | {alone / time:.1f} | {100 * alone / time / workers:.0f} % | {what_holds(jobs, workers, options, time)} |")
+        print(f"| {workers} | {time:.1f} | {alone / time:.1f} | {100 * alone / time / workers:.0f} % | "
+              f"{what_holds(jobs, workers, options, time)} |")
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
 #include "tests/support/noise.hpp"
 

@@ -1,10 +1,12 @@
-"""MINQUE with a matrix for everything at every instant, as [RV 4, 5] writes it, in interpreted code; against `fusion_bench matrices`.
+"""MINQUE with a matrix for everything at every instant, as [RV 4, 5] writes it, in interpreted code; against
+`fusion_bench matrices`.
 
     /usr/bin/python3 tests/bench/fusion_plain_bench.py [--build build] [--rounds 20]
 
-Needs python3-numpy from Debian. Every instant builds H of the sensors that are not flagged, P = I - H (H'H)^-1 H', P o P and its
-inverse, the moments of the residuals, the variances, R, R^-1 and the weighted mean: what the text says, with numpy's inv or pinv,
-no use of H = 1 or of R being diagonal. Prints the best of the rounds and ratios; asserts nothing.
+Needs python3-numpy from Debian. Every instant builds H of the sensors that are not flagged, P = I - H
+(H'H)^-1 H', P o P and its inverse, the moments of the residuals, the variances, R, R^-1 and the weighted
+mean: what the text says, with numpy's inv or pinv, no use of H = 1 or of R being diagonal. Prints the best of
+the rounds and ratios; asserts nothing.
 """
 import argparse
 import pathlib
@@ -40,13 +42,15 @@ def plain_minque(y, invert, gamma=0.999, threshold=1e4):
     return estimates
 
 
-ours = subprocess.run([f"{options.build}/tests/bench/fusion_bench", "matrices"], check=True, capture_output=True, text=True).stdout
+ours = subprocess.run([f"{options.build}/tests/bench/fusion_bench", "matrices"], check=True, capture_output=True,
+                      text=True).stdout
 ours = {int(n): float(ns) for n, ns in re.findall(r"n = (\d+) +([0-9.]+)", ours)}
 generator = np.random.default_rng(3)
 print(f"MINQUE, ns a step; numpy {np.__version__}")
 print(f"{'':>8}{'minque':>10}{'numpy, inv (ratio)':>24}{'numpy, pinv (ratio)':>24}")
 for n, ns in ours.items():
-    y = 2 * generator.standard_normal(100) + np.sqrt(np.linspace(1, 7, n))[:, None] * generator.standard_normal((n, 100))
+    noise = np.sqrt(np.linspace(1, 7, n))[:, None]
+    y = 2 * generator.standard_normal(100) + noise * generator.standard_normal((n, 100))
     line = f"n = {n:<4}{ns:>10.1f}"
     for invert in (np.linalg.inv, np.linalg.pinv):
         best = float("inf")

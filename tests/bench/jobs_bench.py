@@ -1,10 +1,12 @@
-"""Whole jobs of the program, and what people run today for the same where it is installed: wall time, processor time, peak memory.
+"""Whole jobs of the program, and what people run today for the same where it is installed: wall time,
+processor time, peak memory.
 
     python3 tests/bench/jobs_bench.py [--build build] [--rounds 5] [--only WORD] [--folder FOLDER]
 
-Jobs of a round are interleaved with their peers. A ratio is the peer's time over ours, the median of the rounds with the least and the largest.
-Peers: R's data.table (r-cran-data.table) for reading, Python (python3-pandas, python3-scipy; /usr/bin/python3) for the whole. One that is not
-installed is left out and said. Inputs are made once, 3 GB in --folder (default: a temporary one). Nothing is asserted.
+Jobs of a round are interleaved with their peers. A ratio is the peer's time over ours, the median of the
+rounds with the least and the largest. Peers: R's data.table (r-cran-data.table) for reading, Python
+(python3-pandas, python3-scipy; /usr/bin/python3) for the whole. One that is not installed is left out and
+said. Inputs are made once, 3 GB in --folder (default: a temporary one). Nothing is asserted.
 """
 import argparse
 import os
@@ -45,7 +47,8 @@ def peers_installed():
             return subprocess.run(words, capture_output=True).returncode == 0
         except OSError:
             return False
-    return {"fread": works("Rscript", "-e", "library(data.table)"), "python": works("/usr/bin/python3", "-c", "import pandas, scipy")}
+    return {"fread": works("Rscript", "-e", "library(data.table)"),
+            "python": works("/usr/bin/python3", "-c", "import pandas, scipy")}
 
 
 def jobs(program, cores, python):
@@ -55,19 +58,25 @@ def jobs(program, cores, python):
     return [
         ("inspect, 10⁷ × 7 CSV", "csv7", [program, "inspect", "csv7.csv"], "fread", fread("csv7.csv")),
         ("characterize, 10⁷ × 7 CSV, segments of 65536", "csv7",
-         [program, "characterize", "csv7.csv", "-o", "out", "--force", "--quiet", "--segment", "65536"], "python", [*python, "csv7.csv", "65536"]),
+         [program, "characterize", "csv7.csv", "-o", "out", "--force", "--quiet", "--segment", "65536"], "python",
+         [*python, "csv7.csv", "65536"]),
         ("characterize, 10⁷ × 7 CSV, segments of N/4", "csv7",
-         [program, "characterize", "csv7.csv", "-o", "out", "--force", "--quiet"], "python", [*python, "csv7.csv", "0"]),
-        ("characterize, 40 × 14,442 CSV", "csv40", [program, "characterize", "csv40.csv", "-o", "out", "--force", "--quiet"], "python",
+         [program, "characterize", "csv7.csv", "-o", "out", "--force", "--quiet"], "python",
+         [*python, "csv7.csv", "0"]),
+        ("characterize, 40 × 14,442 CSV", "csv40",
+         [program, "characterize", "csv40.csv", "-o", "out", "--force", "--quiet"], "python",
          [*python, "csv40.csv", "0"]),
         ("characterize, 10⁸ samples .npy, segments of N/4", "npy8",
          [program, "characterize", "npy8.npy", "--rate", "100", "-o", "out", "--force", "--quiet"], "", []),
         ("characterize, 10⁸ samples .npy, segments of 65536", "npy8",
-         [program, "characterize", "npy8.npy", "--rate", "100", "-o", "out", "--force", "--quiet", "--segment", "65536"], "", []),
+         [program, "characterize", "npy8.npy", "--rate", "100", "-o", "out", "--force", "--quiet", "--segment",
+          "65536"], "", []),
         ("allan --taus dense, 10⁷ samples, 1,740 times", "npy7",
-         [program, "allan", "npy7.npy", "--rate", "100", "--taus", "dense", "-o", "out.csv", "--force", "--quiet"], "", []),
+         [program, "allan", "npy7.npy", "--rate", "100", "--taus", "dense", "-o", "out.csv", "--force", "--quiet"],
+         "", []),
         ("the same with --full-overlap", "npy7",
-         [program, "allan", "npy7.npy", "--rate", "100", "--taus", "dense", "--full-overlap", "-o", "out.csv", "--force", "--quiet"], "", []),
+         [program, "allan", "npy7.npy", "--rate", "100", "--taus", "dense", "--full-overlap", "-o", "out.csv",
+          "--force", "--quiet"], "", []),
     ]
 
 
@@ -117,7 +126,8 @@ def main():
     there = peers_installed()
     try:
         print("| job | wall s | CPU s | peak MB | against | wall ratio | CPU ratio |\n|---|---|---|---|---|---|---|")
-        for name, kind, ours, peer, theirs in jobs(str(build / "tools/sensorchar"), len(os.sched_getaffinity(0)), python):
+        for name, kind, ours, peer, theirs in jobs(str(build / "tools/sensorchar"), len(os.sched_getaffinity(0)),
+                                                   python):
             if options.only not in name:
                 continue
             make(kind, folder, build)

@@ -1,4 +1,5 @@
-// Writes fixtures/imu_at_rest.csv: a simulated gyroscope and accelerometer at rest with known coefficients (fixtures/README.md).
+// Writes fixtures/imu_at_rest.csv: a simulated gyroscope and accelerometer at rest with known
+// coefficients (fixtures/README.md).
 //   make_fixture_bench > fixtures/imu_at_rest.csv
 #include <fmt/format.h>
 

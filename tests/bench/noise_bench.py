@@ -1,9 +1,10 @@
-"""Simulated noise against numpy and scipy: flicker + white + random walk of one length, CPU time, interleaved in one run.
+"""Simulated noise against numpy and scipy: flicker + white + random walk of one length, CPU time, interleaved
+in one run.
 
     /usr/bin/python3 tests/bench/noise_bench.py [--build build] [--samples 8388608] [--rounds 3]
 
-Needs python3-numpy and python3-scipy from Debian. Prints the best of the rounds and ratios; asserts nothing. The program's own
-table also has the same methods in C++ with FFTW.
+Needs python3-numpy and python3-scipy from Debian. Prints the best of the rounds and ratios; asserts nothing.
+The program's own table also has the same methods in C++ with FFTW.
 """
 import argparse
 import pathlib
@@ -27,14 +28,16 @@ generator = np.random.Generator(np.random.PCG64(1))  # numpy's default and faste
 
 
 def with_white_and_walk(flicker):
-    return 1e-3 * flicker + 0.07 * generator.standard_normal(flicker.size) + np.cumsum(7e-6 * generator.standard_normal(flicker.size))
+    white = 0.07 * generator.standard_normal(flicker.size)
+    return 1e-3 * flicker + white + np.cumsum(7e-6 * generator.standard_normal(flicker.size))
 
 
 def shaped_spectrum():
     """The usual recipe for 1/f noise: normal spectrum times f^-1/2, one inverse transform (wraps around)."""
     k = np.arange(1, n // 2 + 1)
     spectrum = np.zeros(n // 2 + 1, complex)
-    spectrum[1:] = (generator.standard_normal(k.size) + 1j * generator.standard_normal(k.size)) / np.sqrt(4 * np.sin(np.pi * k / n))
+    spectrum[1:] = (generator.standard_normal(k.size) + 1j
+                    * generator.standard_normal(k.size)) / np.sqrt(4 * np.sin(np.pi * k / n))
     return with_white_and_walk(scipy.fft.irfft(spectrum, n) * np.sqrt(n)), n
 
 
@@ -61,7 +64,8 @@ def three_deviates():
 
 def ours():
     """User CPU of the program, from its own report."""
-    text = subprocess.run([f"{options.build}/tests/bench/noise_bench", "--memory", str(n)], check=True, capture_output=True, text=True).stdout
+    text = subprocess.run([f"{options.build}/tests/bench/noise_bench", "--memory", str(n)], check=True,
+                          capture_output=True, text=True).stdout
     found = re.search(r"([\d.]+) ns/sample", text)
     if not found:
         sys.exit("noise_bench printed: " + text)

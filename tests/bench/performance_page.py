@@ -1,4 +1,5 @@
-"""Writes docs/performance.md: what every program of tests/bench says on this machine, with the commands. Best on a quiet machine; about 15 min.
+"""Writes docs/performance.md: what every program of tests/bench says on this machine, with the commands. Best
+on a quiet machine; about 15 min.
 
     python3 tests/bench/performance_page.py [--build build] [--rounds 5] [--output docs/performance.md]
 
@@ -15,18 +16,25 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
-# Title, what is to be known beforehand, words of the command ({build}, {rounds}, {folder}), a table in Markdown already.
+# Title, what is to be known beforehand, words of the command ({build}, {rounds}, {folder}), a table in
+# Markdown already.
 SECTIONS = [
-    ("Whole jobs", "Medians of rounds in which our job and its peer take turns; in brackets the least and the largest. Python does no hash, fit, quality or report.",
-     ["python3", "tests/bench/jobs_bench.py", "--build", "{build}", "--rounds", "{rounds}", "--folder", "{folder}"], True),
-    ("Reading CSV", "`parse/from_ch.`: our parser over a plain loop of `std::from_chars` on the same bytes. `comma`: decimal commas.",
+    ("Whole jobs", "Medians of rounds in which our job and its peer take turns; in brackets the least and the "
+                   "largest. Python does no hash, fit, quality or report.",
+     ["python3", "tests/bench/jobs_bench.py", "--build", "{build}", "--rounds", "{rounds}", "--folder", "{folder}"],
+     True),
+    ("Reading CSV", "`parse/from_ch.`: our parser over a plain loop of `std::from_chars` on the same bytes. "
+                    "`comma`: decimal commas.",
      ["{build}/tests/bench/csv_bench", "100"], False),
-    ("Allan deviation", "Speed beside memcpy, and the largest relative error against 128-bit fixed point under offsets and drifts.",
+    ("Allan deviation", "Speed beside memcpy, and the largest relative error against 128-bit fixed point under "
+                        "offsets and drifts.",
      ["{build}/tests/bench/allan_bench", "7"], False),
     ("Spectrum", "", ["{build}/tests/bench/spectrum_bench"], False),
     ("Simulation", "Flicker, white noise and random walk.", ["{build}/tests/bench/noise_bench"], False),
-    ("Simulation in Python", "The same with NumPy and SciPy.", ["/usr/bin/python3", "tests/bench/noise_bench.py"], False),
-    ("Replay", "Every algorithm on 12 sensors of 10⁶ samples that stream from CSV.", ["python3", "tests/bench/replay_bench.py", "--program", "{build}/tools/sensorchar"], False),
+    ("Simulation in Python", "The same with NumPy and SciPy.", ["/usr/bin/python3", "tests/bench/noise_bench.py"],
+     False),
+    ("Replay", "Every algorithm on 12 sensors of 10⁶ samples that stream from CSV.",
+     ["python3", "tests/bench/replay_bench.py", "--program", "{build}/tools/sensorchar"], False),
 ]
 
 
@@ -36,14 +44,16 @@ def output(*words):
 
 
 def processor():
-    names = [line.split(":")[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
+    names = [line.split(":")[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+             if line.startswith("model name")]
     return names[0] if names else platform.machine()
 
 
 def machine(build):
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
     version = output(str(build / "tools/sensorchar"), "--version").splitlines()[0]
-    return (f"{version}; {processor()}, {len(os.sched_getaffinity(0))} cores, {memory:.0f} GB, {output('uname', '-sr')}, "
+    return (f"{version}; {processor()}, {len(os.sched_getaffinity(0))} cores, {memory:.0f} GB, "
+            f"{output('uname', '-sr')}, "
             f"{output('c++', '--version').splitlines()[0]}; {time.strftime('%d %B %Y', time.gmtime()).lstrip('0')}")
 
 
@@ -73,8 +83,10 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         values = {"build": str(build), "rounds": str(options.rounds), "folder": options.folder or scratch}
         page = ["# Performance", "",
-                "Written by `.ci/figures performance`: the programs of `tests/bench`, as they print. Where the time of the main job goes, and what was tried: "
-                "[theory/speed.md](theory/speed.md). Error against time: [accuracy.md](accuracy.md).", "", machine(build) + ".", ""]
+                "Written by `.ci/figures performance`: the programs of `tests/bench`, as they print. Where the time "
+                "of the main job goes, and what was tried: "
+                "[theory/speed.md](theory/speed.md). Error against time: [accuracy.md](accuracy.md).", "",
+                machine(build) + ".", ""]
         for row in SECTIONS:
             page += section(*row, values)
     options.output.write_text("\n".join(page).rstrip() + "\n")

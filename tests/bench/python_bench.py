@@ -1,4 +1,5 @@
-"""What Python adds to a call of the library: wall time of the function over that of the C++ call inside it, in the same run.
+"""What Python adds to a call of the library: wall time of the function over that of the C++ call inside it,
+in the same run.
 
 usage: PYTHONPATH=build/python tests/bench/python_bench.py [--samples 1000000] [--rounds 7]
 """
@@ -13,7 +14,8 @@ import numpy as np
 import libchar
 from libchar import _libchar, functions
 
-MODEL = "format: sensor-model\nversion: 1\nchannel: gyro\nunit: deg/s\nrate_hz: 100\ndensity: two-sided\nwhite_noise: {value: 0.01}\n"
+MODEL = ("format: sensor-model\nversion: 1\nchannel: gyro\nunit: deg/s\nrate_hz: 100\ndensity: two-sided\n"
+         "white_noise: {value: 0.01}\n")
 inside = []
 characterize_columns = _libchar.characterize_columns
 
@@ -25,7 +27,8 @@ def timed(*arguments):
 
 
 def calls(samples, folder):
-    """(name, what Python calls): a record in memory; a simulation of as many samples; a replay of a recording of five channels in a file."""
+    """(name, what Python calls): a record in memory; a simulation of as many samples; a replay of a recording
+    of five channels in a file."""
     record = np.random.default_rng(1).normal(size=samples)
     for name in ("allan", "fit", "characterize", "psd"):
         yield name, lambda name=name: getattr(functions, name)(record, 100.0)
@@ -54,7 +57,8 @@ def main():
     parser.add_argument("--rounds", type=int, default=7)
     options = parser.parse_args()
     functions._libchar.characterize_columns = timed
-    print(f"{options.samples} samples, median of {options.rounds}: seconds of the Python function, of the C++ call, ratio")
+    print(f"{options.samples} samples, median of {options.rounds}: seconds of the Python function, of the C++ call, "
+          f"ratio")
     with tempfile.TemporaryDirectory() as folder:
         for name, call in calls(options.samples, folder):
             walls, own = measure(call, options.rounds)

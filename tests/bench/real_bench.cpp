@@ -1,6 +1,7 @@
-// What the program says of the recordings in ../shared/data: goodness inside the band, coefficients beside those that two unlike
-// methods agree on, the loop through a simulation; whether the quarters of a long record agree and the first half predicts the
-// second; what is known of published curves and of clocks. Usage: real_bench [parts = 123] [folder = ../shared/data]
+// What the program says of the recordings in ../shared/data: goodness inside the band, coefficients
+// beside those that two unlike methods agree on, the loop through a simulation; whether the
+// quarters of a long record agree and the first half predicts the second; what is known of
+// published curves and of clocks. Usage: real_bench [parts = 123] [folder = ../shared/data]
 #include <fmt/format.h>
 
 #include <cmath>
@@ -56,7 +57,8 @@ void print_fit(const std::string& name, const NoiseFit& fit) {
   fmt::print("\n");
 }
 
-/// Gyroscopes of the first recording: ranges that two unlike methods agree on, a shape on the whole spectrum and a cut without one.
+/// Gyroscopes of the first recording: ranges that two unlike methods agree on, a shape on the whole
+/// spectrum and a cut without one.
 struct Agreed {
   Interval q, b, k;
 };

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Speed and memory of the readers of ROS logs: ros_logs_bench.py SENSORCHAR [--gigabytes 2] [--folder DIR]
 
-Makes an MCAP file of one IMU (uncompressed chunks of 1 MiB, CDR, as rosbag2 writes them) and a bag of an IMU beside a camera (python3-rosbag), and
-reads each: MB/s of processor time, with and without the digest of the file, and the largest memory. Files are kept for another run."""
+Makes an MCAP file of one IMU (uncompressed chunks of 1 MiB, CDR, as rosbag2 writes them) and a bag of an IMU
+beside a camera (python3-rosbag), and reads each: MB/s of processor time, with and without the digest of the
+file, and the largest memory. Files are kept for another run."""
 import argparse
 import os
 import pathlib
@@ -11,9 +12,12 @@ import subprocess
 import time
 import zlib
 
-IMU = ("std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
-       "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n" + "=" * 80 +
-       "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" + "=" * 80 + "\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\n"
+IMU = ("std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] "
+       "orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+       "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\nfloat64[9] "
+       "linear_acceleration_covariance\n" + "=" * 80 +
+       "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" + "=" * 80
+       + "\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\n"
        "float64 z\nfloat64 w\n" + "=" * 80 + "\nMSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n")
 
 
@@ -30,7 +34,8 @@ def make_mcap(path, size):
     noise = os.urandom(1 << 16)
     with path.open("wb") as file:
         file.write(b"\x89MCAP0\r\n" + record(1, text(b"ros2") + text(b"bench")))
-        head = record(3, struct.pack("<H", 1) + text(b"sensor_msgs/msg/Imu") + text(b"ros2msg") + text(IMU.encode())) + record(
+        head = record(3, struct.pack("<H", 1) + text(b"sensor_msgs/msg/Imu") + text(b"ros2msg")
+                      + text(IMU.encode())) + record(
             4, struct.pack("<HH", 0, 1) + text(b"/imu") + text(b"cdr") + text(b""))
         i = 0
         while file.tell() < size:
@@ -38,13 +43,15 @@ def make_mcap(path, size):
             for _ in range(3000):
                 t = 1700000000 * 10**9 + i * 10**6
                 k = i * 12 % 60000
-                values = [0, 0, 0, 1, -1] + [0.0] * 8 + [v / 1e5 for v in struct.unpack_from("<3h", noise, k)] + [0.0] * 9 + [
-                    v / 1e4 for v in struct.unpack_from("<3h", noise, k + 6)] + [0.0] * 9
+                rates = [v / 1e5 for v in struct.unpack_from("<3h", noise, k)]
+                forces = [v / 1e4 for v in struct.unpack_from("<3h", noise, k + 6)]
+                values = [0, 0, 0, 1, -1] + [0.0] * 8 + rates + [0.0] * 9 + forces + [0.0] * 9
                 data = b"\0\1\0\0" + struct.pack("<iII4s37d", t // 10**9, t % 10**9, 4, b"imu\0", *values)
                 parts.append(struct.pack("<BQHIQQ", 5, 22 + len(data), 0, i, t, t) + data)
                 i += 1
             content = b"".join(parts)
-            file.write(record(6, struct.pack("<QQQI", 0, 0, len(content), zlib.crc32(content)) + text(b"") + struct.pack("<Q", len(content)) + content))
+            file.write(record(6, struct.pack("<QQQI", 0, 0, len(content), zlib.crc32(content)) + text(b"")
+                              + struct.pack("<Q", len(content)) + content))
         file.write(record(15, bytes(4)) + record(2, bytes(20)) + b"\x89MCAP0\r\n")
 
 
@@ -88,7 +95,8 @@ def main():
             make(path, size)
         megabytes = path.stat().st_size / 1e6
         status, wall, cpu, memory = run([arguments.program, "inspect", str(path), "--topic", "/imu"])
-        print(f"{name}: {megabytes:.0f} MB in {wall:.2f} s ({megabytes / wall:.0f} MB/s), {cpu:.2f} s of processors ({megabytes / cpu:.0f} MB/s a core), "
+        print(f"{name}: {megabytes:.0f} MB in {wall:.2f} s ({megabytes / wall:.0f} MB/s), {cpu:.2f} s of processors "
+              f"({megabytes / cpu:.0f} MB/s a core), "
               f"memory at most {memory:.0f} MB, exit {status}")
 
 

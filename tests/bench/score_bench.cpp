@@ -1,5 +1,5 @@
-// Intervals of an RMSE (libchar/replay/error_meter.hpp): of 200 records of each kind, how many have one, how many of these hold the
-// expected RMSE (of 600 other records), and how wide they are.
+// Intervals of an RMSE (libchar/replay/error_meter.hpp): of 200 records of each kind, how many have
+// one, how many of these hold the expected RMSE (of 600 other records), and how wide they are.
 //   score_bench [RECORDS]
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// How often a steady record is called unsteady, and what becomes of records that change. Usage: stationarity_bench [records = 200]
+// How often a steady record is called unsteady, and what becomes of records that change. Usage:
+// stationarity_bench [records = 200]
 #include <fmt/format.h>
 
 #include <cmath>

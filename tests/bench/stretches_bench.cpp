@@ -1,5 +1,7 @@
-// One long log in stretches: a log to try it with, one stretch by one machine, and the merge. Memory and time: /usr/bin/time -v.
-// Usage: stretches_bench make SAMPLES LOG.f32 [HOLES]        white noise and a walk at 1000 Hz; one sample of HOLES is missing
+// One long log in stretches: a log to try it with, one stretch by one machine, and the merge.
+// Memory and time: /usr/bin/time -v.
+// Usage: stretches_bench make SAMPLES LOG.f32 [HOLES]        white noise and a walk at
+//                                                            1000 Hz; one sample of HOLES is missing
 //        stretches_bench take LOG STATE FIRST_LEAF END_LEAF   STATE.0, STATE.1 …: a file for each channel
 //        stretches_bench divide LOG FOLDER STRETCHES         all of them, one after the other
 //        stretches_bench merge STATE…                        what was found, and a digest of its bits

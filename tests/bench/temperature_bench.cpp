@@ -1,5 +1,5 @@
-// What is taken for an effect of temperature, and what becomes of one: false alarms, the coefficient and its interval, the random walk
-// afterwards. Usage: temperature_bench [records = 40]
+// What is taken for an effect of temperature, and what becomes of one: false alarms, the
+// coefficient and its interval, the random walk afterwards. Usage: temperature_bench [records = 40]
 #include <fmt/format.h>
 
 #include <cstdlib>

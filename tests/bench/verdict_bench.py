@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Is the verdict's choice good? Thermometers side by side with unlike offsets, lags, resolutions and noise, a seed each.
+"""Is the verdict's choice good? Thermometers side by side with unlike offsets, lags, resolutions and noise, a
+seed each.
 
 usage: verdict_bench.py PROGRAM [SEEDS]
 
-Each scene is replayed twice: with the truth as its reference (learnt on the first third, judged on the rest) and without any reference. Printed
-is the error against the truth of what each verdict recommends, over that of the best method of its own list (bounds apart).
+Each scene is replayed twice: with the truth as its reference (learnt on the first third, judged on the rest)
+and without any reference. Printed is the error against the truth of what each verdict recommends, over that
+of the best method of its own list (bounds apart).
 """
 
 import csv
@@ -46,7 +48,8 @@ def sensor(rng, x):
 def run(program, folder, scene):
     path = folder / "scene.yaml"
     path.write_text(scene)
-    done = subprocess.run([program, "replay", path, "-o", folder / "out", "--force", "--json"], capture_output=True, text=True)
+    done = subprocess.run([program, "replay", path, "-o", folder / "out", "--force", "--json"], capture_output=True,
+                          text=True)
     if done.returncode not in (0, 4):
         sys.exit(done.stderr)
     return json.loads(done.stdout)
@@ -86,7 +89,8 @@ def main():
             good[kind] += ratio <= limit
             row += f"{best or 'none':>24s} {ratio:7.3f} "
         print(row)
-    print(f"within 5 % with a reference: {good['with']} of {seeds}; within 15 % without one: {good['without']} of {seeds}")
+    print(f"within 5 % with a reference: {good['with']} of {seeds}; within 15 % without one: {good['without']} of "
+          f"{seeds}")
 
 
 main()

@@ -1,4 +1,5 @@
-// Only rest is analysed: a stretch as asked, the longest still one, and what is refused. Rails, held values and staircases.
+// Only rest is analysed: a stretch as asked, the longest still one, and what is refused. Rails,
+// held values and staircases.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

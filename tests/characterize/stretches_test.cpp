@@ -168,7 +168,8 @@ TEST_CASE("a log in stretches: an offset of 1e9 standard deviations, a drift, an
   const Characterization whole = as_stream(log.path(), options);
   const Characterization joined =
       characterize_from_stretches(states_of(log.path(), 3, options), options);
-  // Of the stream the blocks of the fit are shorter where they are not half a segment, and quantized to 1e-7 of the noise.
+  // Of the stream the blocks of the fit are shorter where they are not half a segment, and
+  // quantized to 1e-7 of the noise.
   agree(joined, whole, {.allan = 1e-12, .mean = 1e-12, .spectrum = 1e-10, .fit = 0.3});
 }
 
@@ -373,7 +374,8 @@ TEST_CASE("states that are cut or changed anywhere are refused, and never read")
   REQUIRE(stretch_head(two.states[1]).identity == "log 1");
 }
 
-// Whoever changes a state on purpose can give it a digest too: what it says is then refused, or shown, and nothing else happens.
+// Whoever changes a state on purpose can give it a digest too: what it says is then refused, or
+// shown, and nothing else happens.
 TEST_CASE("states that are changed and have the digest of that end in a result or a sentence") {
   const TwoStates two;
   const std::string whole = two.states[0].bytes();

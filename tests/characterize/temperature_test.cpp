@@ -1,4 +1,5 @@
-// Temperature on its way through a characterization: chosen by name, read beside the others, refused where it cannot be had.
+// Temperature on its way through a characterization: chosen by name, read beside the others,
+// refused where it cannot be had.
 #include <catch2/catch.hpp>
 #include <cmath>
 

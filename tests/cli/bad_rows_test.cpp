@@ -1,5 +1,6 @@
-// Every row of fixtures/bad: a text or command line that is wrong or odd in one way, and what must be said of it: verdict, exit code,
-// code and place. The rows were written by what is right, not by what the program says.
+// Every row of fixtures/bad: a text or command line that is wrong or odd in one way, and what must
+// be said of it: verdict, exit code, code and place. The rows were written by what is right, not by
+// what the program says.
 
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -96,7 +97,8 @@ void write(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// The files of the row, and the words that look at them; the first input is the last word of `words` before the options.
+/// The files of the row, and the words that look at them; the first input is the last word of
+/// `words` before the options.
 std::vector<std::string> arranged(const std::string& kind, const BadRow& row, const fs::path& at) {
   const std::string content = unescaped(row.content);
   std::vector<std::string> words;

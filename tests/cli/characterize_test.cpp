@@ -93,8 +93,8 @@ TEST_CASE("kept and streamed records agree") {
   const Json a = report_of(kept), b = report_of(streamed);
   for (const char* term : {"white_noise", "bias_instability", "random_walk"}) {
     const Json &x = fit_of(a, "gyro_z").at(term), &y = fit_of(b, "gyro_z").at(term);
-    // One transform of the whole against transforms of blocks: the same information but for the seams, so the estimates may differ
-    // by a small part of their uncertainty.
+    // One transform of the whole against transforms of blocks: the same information but for the
+    // seams, so the estimates may differ by a small part of their uncertainty.
     const double half_width =
         (x.at("ci95").at(1).get<double>() - x.at("ci95").at(0).get<double>()) / 2;
     CHECK(std::abs(x.at("value").get<double>() - y.at("value").get<double>()) < 0.25 * half_width);

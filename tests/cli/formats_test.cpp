@@ -1,4 +1,5 @@
-// The examples of docs/formats.md, read as people read them: what stands in a block's first line is what inspect must find.
+// The examples of docs/formats.md, read as people read them: what stands in a block's first line is
+// what inspect must find.
 
 #include <catch2/catch.hpp>
 #include <fstream>

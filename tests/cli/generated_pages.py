@@ -3,7 +3,8 @@
 usage: generated_pages.py PROGRAM man|bash|zsh|fish|examples    exits with 77 where the shell or man is not installed
 
 man        every page renders without a warning and has every verb, argument and option
-bash…      the completion is loaded by that shell and asked: every verb, every option of every verb, words, files, folders
+bash…      the completion is loaded by that shell and asked: every verb, every option of every verb, words,
+files, folders
 examples   every command in the help of a verb runs
 """
 import json
@@ -52,7 +53,8 @@ def man():
     environment = dict(os.environ, LC_ALL="C.UTF-8", MANROFFSEQ="", MANWIDTH="80")
     for words in [["man"]] + [["man", name] for name in verbs]:
         page = generated(*words)
-        ran = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", str(page)], env=environment, capture_output=True, text=True)
+        ran = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", str(page)], env=environment,
+                             capture_output=True, text=True)
         expect(ran.returncode == 0 and not ran.stderr, f"{page.name}: {ran.stderr}")
         text = re.sub(".\b", "", ran.stdout)
         wanted = [f"sensorchar-{name}" for name in verbs] if len(words) == 1 else all_flags(verbs[words[1]])
@@ -105,7 +107,8 @@ while IFS=$'\\x1f' read -r -a COMP_WORDS; do
 done"""
     asked = list(questions())
     equals = (["allan", "--type", "=", "oa"], ["oadev"], ["mdev"])  # as bash splits --type=oa
-    lines = "".join("\x1f".join(["sensorchar", *words[:-1], words[-1] or "@"]) + "\n" for words, _, _ in [*asked, equals])
+    lines = "".join("\x1f".join(["sensorchar", *words[:-1], words[-1] or "@"]) + "\n" for words, _,
+                    _ in [*asked, equals])
     ran = subprocess.run(["bash", "--norc", "-c", script], input=lines, cwd=place(), capture_output=True, text=True)
     expect(not re.sub(r".*compopt.*\n", "", ran.stderr), ran.stderr)
     answers = ran.stdout.split("\n")
@@ -118,7 +121,8 @@ def fish():
     asked = list(questions())
     script = f"source {generated('fish')}\n" + "".join(
         f"complete -C {json.dumps(' '.join(['sensorchar', *words]))}\necho ======\n" for words, _, _ in asked)
-    ran = subprocess.run(["fish", "--no-config", "-c", script], cwd=place(), capture_output=True, text=True, env=dict(os.environ, HOME=str(scratch)))
+    ran = subprocess.run(["fish", "--no-config", "-c", script], cwd=place(), capture_output=True, text=True,
+                         env=dict(os.environ, HOME=str(scratch)))
     expect(not ran.stderr, ran.stderr)
     for (words, wanted, unwanted), answer in zip(asked, ran.stdout.split("======\n")):
         hold(words, [line.split("\t")[0] for line in answer.split("\n")], wanted, unwanted)
@@ -171,14 +175,16 @@ print SET''UP
         while "DONE" not in answers.read_text() and time.monotonic() < end:
             shell.ask("", "\x00", 0.05)
         # Of a list, zsh replaces the word behind the last comma.
-        hold(words, [line.split(":")[0] for line in answers.read_text().split("\n")], [word.split(",")[-1] for word in wanted], unwanted)
+        hold(words, [line.split(":")[0] for line in answers.read_text().split("\n")],
+             [word.split(",")[-1] for word in wanted], unwanted)
     os.close(shell.terminal)
     os.waitpid(shell.child, 0)
 
 
 def run(command, folder):
     environment = dict(os.environ, PATH=f"{scratch}/bin:{os.environ['PATH']}", TERM="dumb")
-    return subprocess.run(["bash", "-c", command], cwd=folder, env=environment, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    return subprocess.run(["bash", "-c", command], cwd=folder, env=environment, capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL)
 
 
 LONG = {"sensorchar bench --quick"}  # half a minute: that it is understood is enough
@@ -189,14 +195,19 @@ def examples():
     (scratch / "bin").mkdir()
     (scratch / "bin" / "sensorchar").symlink_to(program)
     shutil.copy(root / "fixtures/imu_at_rest.csv", scratch / "imu.csv")
-    (scratch / "curve.csv").write_text("tau,adev\n" + "".join(f"{0.1 * 1.5 ** k},{0.02 / 1.5 ** (k / 2) + 0.001}\n" for k in range(20)))
+    (scratch / "curve.csv").write_text("tau,adev\n" + "".join(f"{0.1 * 1.5 ** k},{0.02 / 1.5 ** (k / 2) + 0.001}\n"
+                                                              for k in range(20)))
     shutil.copy(root / "fixtures/npy/c_order.npy", scratch / "counts.npy")
     cut = [f"sensorchar convert imu.csv -o logs/a0{k}.npy --from {100 * k} --to {100 * k + 100}" for k in range(4)]
-    (scratch / "line7.yaml").write_text("format: fleet-manifest\nversion: 1\ndefaults: {options: {reading: {rate_hz: 50}}}\ndevices:\n" + "".join(
+    (scratch / "line7.yaml").write_text("format: fleet-manifest\nversion: 1\ndefaults: {options: "
+                                        "{reading: {rate_hz: 50}}}\ndevices:\n" + "".join(
         f"  - {{log: logs/a0{k}.npy, batch: '2026-1{1 + k % 2}'}}\n" for k in range(4)))
     before = {"compare": ["cp -r report monday", "cp -r report friday", "cp -r array-replay new-replay"],
-              "fleet-plan": ["mkdir logs", *cut, "cd logs && sha256sum *.npy > SHA256SUMS"], "fleet-merge": ["sensorchar fleet plan logs/a00.npy logs/a01.npy --rate 50 -o april && sensorchar fleet run april",
-                              "sensorchar fleet plan logs/a02.npy logs/a03.npy --rate 50 -o may && sensorchar fleet run may"],
+              "fleet-plan": ["mkdir logs", *cut, "cd logs && sha256sum *.npy > SHA256SUMS"],
+              "fleet-merge": ["sensorchar fleet plan logs/a00.npy logs/a01.npy --rate 50 -o april && sensorchar "
+                              "fleet run april",
+                              "sensorchar fleet plan logs/a02.npy logs/a03.npy --rate 50 -o may && sensorchar fleet "
+                              "run may"],
               "fleet-compare": ["cp -r may march"]}
     for verb in usage["verbs"]:
         expect(len(verb["examples"]) >= 2, f"{verb['name']} has fewer than two examples")

@@ -1,4 +1,5 @@
-"""Every document that the program prints and writes, and every file that it reads, against docs/schema, by a validator that is not ours.
+"""Every document that the program prints and writes, and every file that it reads, against docs/schema, by a
+validator that is not ours.
 
 usage: schema_test.py PROGRAM MAKE_FLEET       exits with 77 where jsonschema or yaml is not installed
 
@@ -116,7 +117,8 @@ with tempfile.TemporaryDirectory() as scratch:
         hold(json.loads(path.read_text()), path.name)
 for path, document in shipped():
     hold(document, path.relative_to(root).as_posix())
-hold(json.loads(subprocess.run([program, "--generate", "json"], check=True, capture_output=True).stdout), "--generate json")
+hold(json.loads(subprocess.run([program, "--generate", "json"], check=True, capture_output=True).stdout),
+     "--generate json")
 
 for name, document in checked.items():
     must_refuse(name, document)

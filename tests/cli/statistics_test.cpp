@@ -1,5 +1,5 @@
-// allan of several statistics, of single devices and in time; psd of two channels, by medians and in time: what the program prints is
-// what the library computes.
+// allan of several statistics, of single devices and in time; psd of two channels, by medians and
+// in time: what the program prints is what the library computes.
 
 #include <catch2/catch.hpp>
 #include <cmath>

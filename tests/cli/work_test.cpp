@@ -1,5 +1,5 @@
-// Nothing is computed that nobody asked for: counts of work of typical requests. A count that rises here is work added: say in
-// docs/bench.md what reads it.
+// Nothing is computed that nobody asked for: counts of work of typical requests. A count that rises
+// here is work added: say in docs/bench.md what reads it.
 
 #include <sys/resource.h>
 

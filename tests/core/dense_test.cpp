@@ -1,4 +1,5 @@
-// Known answers of the small dense algebra: inverses of Hilbert matrices are integers (M.-D. Choi, Amer. Math. Monthly 90, 1983).
+// Known answers of the small dense algebra: inverses of Hilbert matrices are integers (M.-D. Choi,
+// Amer. Math. Monthly 90, 1983).
 
 #include "libchar/core/dense.hpp"
 

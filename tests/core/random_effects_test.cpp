@@ -114,8 +114,8 @@ TEST_CASE("random effects: what is the same far from zero has the same spread") 
 }
 
 TEST_CASE("outliers: the probability is that of Student's t, of any of the values") {
-  // Of four equal values with variance 1 the mean has 1/4: the fifth is off by t sqrt(5/4). With 3 degrees of freedom 12.924 is
-  // passed on either side with probability 0.001.
+  // Of four equal values with variance 1 the mean has 1/4: the fifth is off by t sqrt(5/4). With 3
+  // degrees of freedom 12.924 is passed on either side with probability 0.001.
   const std::vector<double> y = {2, 2, 2, 2, 2 + 12.924 * std::sqrt(1.25)}, v(5, 1.0);
   const auto outliers = find_outliers(y, v, 0.02);
   REQUIRE(outliers.size() == 1);

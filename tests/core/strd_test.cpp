@@ -1,5 +1,5 @@
-// NIST's linear and one-way problems (StRD, ../shared/oracle/strd): least squares to the digits that a QR of scaled columns gives, mean squares to
-// what their decimal inputs allow.
+// NIST's linear and one-way problems (StRD, ../shared/oracle/strd): least squares to the digits
+// that a QR of scaled columns gives, mean squares to what their decimal inputs allow.
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -20,7 +20,8 @@ std::filesystem::path strd_folder() {
   return test::shared_folder() / "oracle/strd";
 }
 
-/// Rows of the table at the end: behind the last line that begins with "Data:", or from a line on (rules of minus signs apart).
+/// Rows of the table at the end: behind the last line that begins with "Data:", or from a line on
+/// (rules of minus signs apart).
 std::vector<std::vector<double>> strd_table(const std::string& name, std::size_t from_line) {
   std::istringstream in(test::slurp(strd_folder() / (name + ".dat")));
   std::vector<std::vector<double>> out;

@@ -1,5 +1,5 @@
-"""Reads what `sensorchar model --to` writes with parsers that are not ours: PyYAML (YAML 1.1, as Kalibr), a check of YAML 1.2
-numbers, python's XML, JSON and Python parsers, xmllint and OpenCV."""
+"""Reads what `sensorchar model --to` writes with parsers that are not ours: PyYAML (YAML 1.1, as Kalibr), a
+check of YAML 1.2 numbers, python's XML, JSON and Python parsers, xmllint and OpenCV."""
 import ast
 import json
 import math
@@ -136,7 +136,8 @@ class Yaml(unittest.TestCase):
             text = device.export("kalibr", "--topic", "/cam/imu")
         data = yaml.safe_load(text)
         self.assertEqual(data, {"rostopic": "/cam/imu", "update_rate": 200.0, "accelerometer_noise_density": 2.0e-3,
-                                "accelerometer_random_walk": 3.0e-3, "gyroscope_noise_density": 1.6968e-4, "gyroscope_random_walk": 1.9393e-5})
+                                "accelerometer_random_walk": 3.0e-3, "gyroscope_noise_density": 1.6968e-4,
+                                "gyroscope_random_walk": 1.9393e-5})
         for key, value in data.items():  # its own checks
             self.assertIsInstance(value, str if key == "rostopic" else float)
             self.assertTrue(key == "rostopic" or value > 0)
@@ -148,7 +149,8 @@ class Yaml(unittest.TestCase):
     def test_euroc(self):
         with Device() as device:
             data = yaml.safe_load(device.export("euroc"))
-        self.assertEqual((data["sensor_type"], data["rate_hz"], data["T_BS"]["rows"], len(data["T_BS"]["data"])), ("imu", 200.0, 4, 16))
+        self.assertEqual((data["sensor_type"], data["rate_hz"], data["T_BS"]["rows"], len(data["T_BS"]["data"])),
+                         ("imu", 200.0, 4, 16))
         self.assertEqual(data["gyroscope_random_walk"], 1.9393e-5)
 
     def test_openvins(self):
@@ -168,7 +170,8 @@ class Yaml(unittest.TestCase):
         self.assertEqual((orb["File.version"], orb["IMU.Frequency"], orb["IMU.NoiseGyro"]), ("1.0", 200.0, 1.6968e-4))
         self.assertIsInstance(orb["IMU.Frequency"], float)
         self.assertIsInstance(old["IMU.Frequency"], int)
-        for key, value in {"acc_n": 4.0e-2, "gyr_n": 3.3936e-3, "acc_w": 4.2426e-2, "gyr_w": 2.7426e-4, "g_norm": 9.81007}.items():
+        for key, value in {"acc_n": 4.0e-2, "gyr_n": 3.3936e-3, "acc_w": 4.2426e-2, "gyr_w": 2.7426e-4,
+                           "g_norm": 9.81007}.items():
             self.assertAlmostEqual(vins[key] / value, 1, delta=2e-5)
 
     def test_ros(self):
@@ -183,7 +186,8 @@ class Yaml(unittest.TestCase):
         """OpenCV's own FileStorage, compiled here: what the three programs read with."""
         with tempfile.TemporaryDirectory() as folder, Device(ROUND_GYRO, ROUND_ACCEL) as device:
             reader = str(pathlib.Path(folder) / "reader")
-            built = subprocess.run(["c++", "-std=c++17", "-I/usr/include/opencv4", "-x", "c++", "-", "-lopencv_core", "-o", reader],
+            built = subprocess.run(["c++", "-std=c++17", "-I/usr/include/opencv4", "-x", "c++", "-", "-lopencv_core",
+                                    "-o", reader],
                                    input=OPENCV_READER, text=True, capture_output=True)
             if "opencv2/core.hpp" in built.stderr:
                 self.skipTest("libopencv-core-dev is not installed")
@@ -210,14 +214,16 @@ class Xml(unittest.TestCase):
         root = ElementTree.fromstring(text)
         self.assertEqual(root.find("sensor").attrib["type"], "imu")
         self.assertEqual(float(root.find("sensor/update_rate").text), 200)
-        for vector, stddev, walk in (("angular_velocity", 2.3996e-3, 1.9393e-5), ("linear_acceleration", 2e-3 * math.sqrt(200), 3e-3)):
+        for vector, stddev, walk in (("angular_velocity", 2.3996e-3, 1.9393e-5),
+                                     ("linear_acceleration", 2e-3 * math.sqrt(200), 3e-3)):
             for axis in "xyz":
                 noise = root.find(f"sensor/imu/{vector}/{axis}/noise")
                 self.assertEqual(noise.attrib, {"type": "gaussian"})
                 self.assertAlmostEqual(float(noise.find("stddev").text) / stddev, 1, delta=1e-4)
                 self.assertEqual(float(noise.find("dynamic_bias_stddev").text), walk)
                 self.assertEqual(float(noise.find("dynamic_bias_correlation_time").text), 72000)
-                self.assertEqual([float(noise.find(key).text) for key in ("mean", "bias_mean", "bias_stddev")], [0, 0, 0])
+                self.assertEqual([float(noise.find(key).text) for key in ("mean", "bias_mean", "bias_stddev")],
+                                 [0, 0, 0])
 
     def test_rotors(self):
         with Device() as device:
@@ -232,7 +238,8 @@ class Xml(unittest.TestCase):
             self.skipTest("xmllint is not installed")
         with Device(status="not_detected") as device:
             for target in ("sdf", "rotors"):
-                run = subprocess.run(["xmllint", "--noout", "--nonet", "-"], input=device.export(target), text=True, capture_output=True)
+                run = subprocess.run(["xmllint", "--noout", "--nonet", "-"], input=device.export(target), text=True,
+                                     capture_output=True)
                 self.assertEqual((run.returncode, run.stderr), (0, ""))
 
 
@@ -247,14 +254,17 @@ class Others(unittest.TestCase):
         self.assertAlmostEqual(airsim["GyroBiasStability"], 89.445, delta=1e-3)
         self.assertEqual(next(iter(basalt)), "value0")
         self.assertEqual(basalt["value0"]["gyro_noise_std"], [1.6968e-4] * 3)
-        self.assertEqual([m["channel"] for m in generic["models"]], ["gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"])
+        self.assertEqual([m["channel"] for m in generic["models"]],
+                         ["gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"])
 
     def test_gnss_ins_sim(self):
         with Device() as device:
             tree = ast.parse(device.export("gnss-ins-sim"))
         dictionary = next(node.value for node in tree.body if isinstance(node, ast.Assign))
-        values = {key.value: [ast.literal_eval(item) for item in call.args[0].elts] for key, call in zip(dictionary.keys, dictionary.values)}
-        required = {"gyro_b", "gyro_b_stability", "gyro_arw", "accel_b", "accel_b_stability", "accel_vrw"}  # of its constructor
+        values = {key.value: [ast.literal_eval(item) for item in call.args[0].elts]
+                  for key, call in zip(dictionary.keys, dictionary.values)}
+        # of its constructor
+        required = {"gyro_b", "gyro_b_stability", "gyro_arw", "accel_b", "accel_b_stability", "accel_vrw"}
         self.assertTrue(required <= set(values))
         self.assertTrue(all(len(v) == 3 for v in values.values()))
         self.assertAlmostEqual(values["gyro_arw"][0], 1.6968e-4 * 60 * 180 / math.pi, delta=1e-9)
@@ -273,7 +283,8 @@ class Others(unittest.TestCase):
     def test_kf_gins(self):
         with Device() as device:
             noise = yaml.safe_load(device.export("kf-gins"))["imunoise"]
-        self.assertEqual(set(noise), {"arw", "vrw", "gbstd", "abstd", "gsstd", "asstd", "corrtime"})  # all that loadConfig asks for
+        # all that loadConfig asks for
+        self.assertEqual(set(noise), {"arw", "vrw", "gbstd", "abstd", "gsstd", "asstd", "corrtime"})
         self.assertEqual(noise["corrtime"], 20)  # h: ten records
         steady = math.sqrt(20 * 3600 / 2)
         for i in range(3):
@@ -285,20 +296,25 @@ class Others(unittest.TestCase):
     def test_navego(self):
         with Device() as device:
             text = device.export("navego")
-        values = {key: [float(v) for v in row.split()] for key, row in re.findall(r"^imu\.(\w+) = \[(.*?)\];", text, re.M)}
-        self.assertEqual(set(values), {"arw", "vrw", "arrw", "vrrw", "gb_sta", "gb_dyn", "gb_corr", "ab_sta", "ab_dyn", "ab_corr"})
+        values = {key: [float(v) for v in row.split()]
+                  for key, row in re.findall(r"^imu\.(\w+) = \[(.*?)\];", text, re.M)}
+        self.assertEqual(set(values), {"arw", "vrw", "arrw", "vrrw", "gb_sta", "gb_dyn", "gb_corr", "ab_sta",
+                                       "ab_dyn", "ab_corr"})
         self.assertAlmostEqual(values["ab_dyn"][1] * 1e-3 * 9.80665 / (ACCEL[2] * math.sqrt(36000)), 1, delta=1e-8)
 
     def test_gtsam_compiles_as_a_snippet(self):
         with Device() as device:
             text = device.export("gtsam", "--gravity", "9.81")
-        source = ("namespace gtsam { struct M {} I_3x3; M operator*(M m, double) { return m; }\nstruct PreintegrationCombinedParams { M gyroscopeCovariance, "
-                  "accelerometerCovariance, biasOmegaCovariance, biasAccCovariance;\nstatic PreintegrationCombinedParams* MakeSharedU(double) "
+        source = ("namespace gtsam { struct M {} I_3x3; M operator*(M m, double) "
+                  "{ return m; }\nstruct PreintegrationCombinedParams { M gyroscopeCovariance, "
+                  "accelerometerCovariance, biasOmegaCovariance, biasAccCovariance;\nstatic "
+                  "PreintegrationCombinedParams* MakeSharedU(double) "
                   "{ static PreintegrationCombinedParams p; return &p; } }; }\nint main() {\n" + text + "}\n")
         compiler = shutil.which("c++")
         if not compiler:
             self.skipTest("no compiler")
-        run = subprocess.run([compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-x", "c++", "-"], input=source, text=True, capture_output=True)
+        run = subprocess.run([compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-x", "c++",
+                              "-"], input=source, text=True, capture_output=True)
         self.assertEqual(run.returncode, 0, run.stderr)
         values = dict(re.findall(r"p->(\w+) = gtsam::I_3x3 \* ([-+0-9.e]+);", text))
         self.assertAlmostEqual(float(values["gyroscopeCovariance"]) / 2.8791e-8, 1, delta=1e-4)
@@ -310,7 +326,8 @@ class Others(unittest.TestCase):
             px4 = device.export("px4")
         code = [line for line in matlab.splitlines() if not line.startswith("%")]
         for line in code:
-            self.assertRegex(line, r"^(gyro|accel) = (gyro|accel)params\('NoiseType', 'double-sided'(, +'\w+', [-+0-9.e]+)+\);$")
+            self.assertRegex(line, r"^(gyro|accel) = (gyro|accel)params\('NoiseType', 'double-sided'(, +'\w+', "
+                                   r"[-+0-9.e]+)+\);$")
         self.assertEqual(len(code), 2)
         lines = [line for line in px4.splitlines() if not line.startswith("#")]
         self.assertEqual(len(lines), 8)

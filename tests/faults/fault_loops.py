@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""Every verb, with every call that can fail failing: once and for ever, one place after the other; and killed before every change of the disk.
+"""Every verb, with every call that can fail failing: once and for ever, one place after the other; and killed
+before every change of the disk.
 
 usage: fault_loops.py PROGRAM SHIM [--quick] [--verb NAME]… [--kind NAME]… [--heap N] [--list]
 
-A verb runs over the results of an earlier run, with other inputs. After each fault: an exit code that docs/errors.md knows, one sentence, the old
-files or the new ones and no others. After each kill: the old files, the new ones, or a journal that makes the new ones of what is there; and
-the next run ends well and leaves nothing else. Prints counts per verb and the commands of what is wrong; exit 1 where something is.
+A verb runs over the results of an earlier run, with other inputs. After each fault: an exit code that
+docs/errors.md knows, one sentence, the old files or the new ones and no others. After each kill: the old
+files, the new ones, or a journal that makes the new ones of what is there; and the next run ends well and
+leaves nothing else. Prints counts per verb and the commands of what is wrong; exit 1 where something is.
 
-A log that shrinks or grows under the reader, limits of a file's size and of the address space, and a disk that is full (where tmpfs may be
-mounted) are tried as well.
+A log that shrinks or grows under the reader, limits of a file's size and of the address space, and a disk
+that is full (where tmpfs may be mounted) are tried as well.
 
   --quick   a few places of each kind in four verbs, as ctest runs it
   --heap N  places in which memory is refused, of the hundreds of thousands there are (default: 600 a verb)
@@ -27,14 +29,16 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-KINDS = ["write", "open", "read", "fsync", "rename", "link", "close", "stat", "mmap", "unlink", "mkdir", "malloc", "thread", "kill", "shrink", "grow", "fsize",
+KINDS = ["write", "open", "read", "fsync", "rename", "link", "close", "stat", "mmap", "unlink", "mkdir", "malloc",
+         "thread", "kill", "shrink", "grow", "fsize",
          "space", "address"]
 CALLS = KINDS[:13]
 CODES = {0, 2, 3, 4, 5}
 JOURNAL = ".libchar-outputs.json"
 MARK = ".libchar-tmp-"
 
-MODEL = "format: sensor-model\nversion: 1\nchannel: gyro\nunit: rad/s\ndensity: two-sided\nrate_hz: 100\nwhite_noise: {{value: {}}}\n"
+MODEL = ("format: sensor-model\nversion: 1\nchannel: gyro\nunit: rad/s\ndensity: two-sided\nrate_hz: 100\n"
+         "white_noise: {{value: {}}}\n")
 SCENE = """format: scene
 version: 1
 name: {}
@@ -83,9 +87,11 @@ VERBS = {
     "convert npy": {"words": ["convert", "log.csv", "-o", "out.npy", "--order", "planar", "--force"]},
     "convert raw": {"words": ["convert", "log.csv", "-o", "out.f64", "--force"]},
     "replay": {"words": ["replay", "s.scene.yaml", "-o", "out", "--estimates", "csv", "--no-timing", "--force"]},
-    "replay log": {"sets": True, "words": ["replay", "array.csv", "--sensors", "c0,c1,c2", "--reference", "c3", "--write-scene", "out.scene.yaml", "-o", "out",
+    "replay log": {"sets": True, "words": ["replay", "array.csv", "--sensors", "c0,c1,c2", "--reference", "c3",
+                                           "--write-scene", "out.scene.yaml", "-o", "out",
                              "--no-timing", "--force"]},
-    "fuse": {"prepare": ["replay", "array.csv", "--sensors", "c0,c1,c2", "--reference", "c3", "-o", "run", "--no-timing"],
+    "fuse": {"prepare": ["replay", "array.csv", "--sensors", "c0,c1,c2", "--reference", "c3", "-o", "run",
+                         "--no-timing"],
              "words": ["fuse", "array.csv", "--with", "run", "-o", "out.csv", "--force"]},
     "compare": {"prepare": ["characterize", "log.csv", "-o", "run"], "words": ["compare", "run", "run", "--json"]},
 }
@@ -106,8 +112,10 @@ class Bench:
         few, enough = 1 << 20, 4 << 30
         while enough - few > 1 << 20:
             middle = (few + enough) // 2
-            loads = subprocess.run([self.program, "--version"], capture_output=True, env=dict(os.environ, LD_PRELOAD=str(self.shim)),
-                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (middle, middle))).returncode == 0
+            loads = subprocess.run([self.program, "--version"], capture_output=True,
+                                   env=dict(os.environ, LD_PRELOAD=str(self.shim)),
+                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
+                                                                         (middle, middle))).returncode == 0
             few, enough = (few, middle) if loads else (middle, enough)
         return enough
 
@@ -115,7 +123,8 @@ class Bench:
         """Only an administrator may make small disks, and not in every container."""
         folder = self.root / "disk"
         folder.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "libchar-faults", folder], capture_output=True).returncode != 0:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "libchar-faults", folder],
+                          capture_output=True).returncode != 0:
             return False
         return subprocess.run(["umount", folder], capture_output=True).returncode == 0
 
@@ -127,20 +136,23 @@ class Bench:
         size = int(fault.split(":")[1]) if limited is not None else 0
         limit = None if limited is None else lambda: resource.setrlimit(limited, (size, size))
         try:
-            ran = subprocess.run([self.program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=60,
+            ran = subprocess.run([self.program, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                                 capture_output=True, timeout=60,
                                  preexec_fn=limit)
         except subprocess.TimeoutExpired:
             return None, {}
         counts = {}
         if log.exists():
-            counts = {name: int(count) for name, count in (line.split() for line in log.read_text().splitlines() if len(line.split()) == 2)}
+            rows = [line.split() for line in log.read_text().splitlines()]
+            counts = {row[0]: int(row[1]) for row in rows if len(row) == 2}
             log.unlink()
         return ran, counts
 
 
 def files_of(folder):
     """What is there apart from inputs: name → bytes."""
-    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file() and p.name not in inputs(1)}
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()
+            and p.name not in inputs(1)}
 
 
 def sets_of(files):
@@ -169,7 +181,8 @@ def spread(count, most):
     if count <= most:
         return list(range(1, count + 1))
     step = (math.log(count) - math.log(1)) / most
-    return sorted({min(count, max(1, round(math.exp(step * k)))) for k in range(most + 1)} | {count * k // most for k in range(1, most)})
+    return sorted({min(count, max(1, round(math.exp(step * k)))) for k in range(most + 1)}
+                  | {count * k // most for k in range(1, most)})
 
 
 class Verb:
@@ -229,13 +242,15 @@ class Verb:
         return spread(count, most)
 
     def sizes(self, kind):
-        """Bytes a file or the address space may have, or pages that a full disk has left: from nothing to more than enough."""
+        """Bytes a file or the address space may have, or pages that a full disk has left: from nothing to
+        more than enough."""
         if kind == "space" and (not self.bench.may_mount or self.name in ("inspect", "compare")):
             return []
         if kind == "address":
             # Stacks of threads take 8 MiB each: 160 MiB more than what is loaded is enough for every verb here.
             loaded = self.bench.least_address_space()
-            return [loaded + (160 << 20) * k // (8 if self.bench.quick else 80) for k in range(9 if self.bench.quick else 81)]
+            return [loaded + (160 << 20) * k // (8 if self.bench.quick else 80)
+                    for k in range(9 if self.bench.quick else 81)]
         largest = max((len(text) for text in self.new.values()), default=1000)
         if kind == "space":
             pages = sum(2 + len(text) // 4096 for text in self.new.values()) + 4
@@ -251,7 +266,8 @@ class Verb:
 
     def wrong(self, number, kind, fault):
         """What is wrong after this fault: "" where nothing is; and what stands there."""
-        folder = self.copy_on_small_disk(number, int(fault.split(":")[1])) if kind == "space" else self.copy(str(number))
+        small = kind == "space"
+        folder = self.copy_on_small_disk(number, int(fault.split(":")[1])) if small else self.copy(str(number))
         try:
             ran, counts = self.bench.run(folder, self.words, fault)
             if ran is None:
@@ -264,7 +280,8 @@ class Verb:
 
     def sets_are_whole(self, now):
         sets = sets_of(self.old | self.new | now)
-        return VERBS[self.name].get("sets") and all(part(now, s) in (part(self.old, s), part(self.new, s)) for s in sets)
+        return VERBS[self.name].get("sets") and all(part(now, s) in (part(self.old, s), part(self.new, s))
+                                                    for s in sets)
 
     def state(self, folder):
         now = files_of(folder)
@@ -281,7 +298,8 @@ class Verb:
             if now == self.new or self.sets_are_whole(now):
                 return "to be finished"
         odd = sorted(n for n in now if now[n] not in (self.old.get(n), self.new.get(n)))
-        return "mixed: " + ", ".join(odd or [n for n in set(self.old) ^ set(self.new) if n in now] or sorted(set(now) ^ set(self.new)) or ["old and new"])
+        return "mixed: " + ", ".join(odd or [n for n in set(self.old) ^ set(self.new) if n in now]
+                                     or sorted(set(now) ^ set(self.new)) or ["old and new"])
 
     def after_fault(self, folder, ran, kind, fault):
         err = ran.stderr.decode(errors="replace")
@@ -294,7 +312,8 @@ class Verb:
         if state.startswith("mixed") and kind not in ("shrink", "grow"):
             return f"exit {ran.returncode}, {state}; {err.strip()[:200]}", state
         if kind in ("shrink", "grow"):
-            # Other input, other numbers: what is asked is that the run ends well or with a sentence, and leaves no other names.
+            # Other input, other numbers: what is asked is that the run ends well or with a sentence, and
+            # leaves no other names.
             names, allowed = set(files_of(folder)), (set(self.old), set(self.new))
             if names not in allowed:
                 return f"exit {ran.returncode}, names {sorted(names)}", "other names"
@@ -321,7 +340,8 @@ class Verb:
                 return state, state
             next_run, _ = self.bench.run(again, self.words)
             if next_run is None or next_run.returncode != 0:
-                return f"the next run ends with {next_run and next_run.returncode}: {next_run and next_run.stderr.decode()[:200]}", state
+                ended = f"{next_run and next_run.returncode}: {next_run and next_run.stderr.decode()[:200]}"
+                return f"the next run ends with {ended}", state
             after = self.state(again)
             if after != "new" and self.new != self.old:
                 return f"the next run leaves {after}: {sorted(set(files_of(again)) - set(self.new))}", state
@@ -358,13 +378,15 @@ def main():
                 continue
             states = {}
             with ThreadPoolExecutor(os.cpu_count()) as pool:
-                for (kind, fault), (wrong, state) in zip(faults, pool.map(lambda n: verb.wrong(n, *faults[n]), range(len(faults)))):
+                for (kind, fault), (wrong, state) in zip(faults, pool.map(lambda n: verb.wrong(n, *faults[n]),
+                                                                          range(len(faults)))):
                     states[state.split(":")[0]] = states.get(state.split(":")[0], 0) + 1
                     if wrong:
                         bad += 1
                         print(f"{name}: LIBCHAR_FAULT={fault}: {wrong}")
             cases += len(faults)
-            print(f"{name:14} {len(faults):6} faults and kills: " + ", ".join(f"{count} {state}" for state, count in sorted(states.items())), flush=True)
+            print(f"{name:14} {len(faults):6} faults and kills: "
+                  + ", ".join(f"{count} {state}" for state, count in sorted(states.items())), flush=True)
     finally:
         shutil.rmtree(bench.root, ignore_errors=True)
     print(f"{cases} cases, {bad} wrong")

@@ -1,10 +1,13 @@
-// Preloaded into a program under test: the n-th call of a kind fails, once or from then on, or the process is killed before it.
+// Preloaded into a program under test: the n-th call of a kind fails, once or from then on, or the
+// process is killed before it.
 //   LIBCHAR_FAULT=KIND:N    the N-th call (from 1) of KIND after the beginning of main fails
 //   LIBCHAR_FAULT=KIND:N+   that one and all after it
 //   LIBCHAR_FAULT_LOG=FILE  how often each kind was called, as KIND COUNT lines, and whether a fault came about
 //   LIBCHAR_FAULT_FILE=FILE the file that shrinks or grows
-// Kinds: write open read fsync rename link close stat mmap unlink mkdir malloc thread, and kill: SIGKILL before the N-th call that changes
-// a file system (write, open, fsync, rename, link, unlink, mkdir, truncate); shrink, grow: before the N-th read FILE loses its second half, or gets it once more. What glibc does inside itself is not seen.
+// Kinds: write open read fsync rename link close stat mmap unlink mkdir malloc thread, and kill:
+// SIGKILL before the N-th call that changes a file system (write, open, fsync, rename, link,
+// unlink, mkdir, truncate); shrink, grow: before the N-th read FILE loses its second half, or gets
+// it once more. What glibc does inside itself is not seen.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -198,8 +201,8 @@ int __libc_start_main(int (*entry)(int, char**, char**),
   return start(counted_main, argc, argv, init, fini, rtld_fini, stack_end);
 }
 
-// The program counts its heap in a malloc of its own in front of these. They are found before main: dlsym inside dlerror inside
-// realloc would free what dlerror holds.
+// The program counts its heap in a malloc of its own in front of these. They are found before main:
+// dlsym inside dlerror inside realloc would free what dlerror holds.
 #define HEAP(NAME, PARAMETERS, ARGUMENTS)                              \
   void* NAME PARAMETERS {                                              \
     using F = void* PARAMETERS;                                        \

@@ -3,11 +3,12 @@
 
 usage: fleet_faults.py PROGRAM SHIM [--quick] [--step NAME]… [--kind NAME]… [--heap N]
 
-Each step of a fleet (plan, run, run of stretches, export, merge) begins with the same folder, in which an earlier fleet was. After each fault: an
-exit code that docs/errors.md knows (from run only such as an engine understands: 75 where it may try again), one sentence; every published
-result is byte for byte that of a run without a fault, and nothing lies beside it; the plan that reads is the old one or the new one, the report
-the old one or the new one. Then the step runs again without a fault, the fleet goes its way to the end, and its report is the one of a fleet
-that never failed. Exit 1 where something is wrong.
+Each step of a fleet (plan, run, run of stretches, export, merge) begins with the same folder, in which an
+earlier fleet was. After each fault: an exit code that docs/errors.md knows (from run only such as an engine
+understands: 75 where it may try again), one sentence; every published result is byte for byte that of a run
+without a fault, and nothing lies beside it; the plan that reads is the old one or the new one, the report the
+old one or the new one. Then the step runs again without a fault, the fleet goes its way to the end, and its
+report is the one of a fleet that never failed. Exit 1 where something is wrong.
 """
 
 import argparse
@@ -73,7 +74,8 @@ class Fleet:
     def ok(self, folder, *words):
         ran, _ = self.bench.run(folder, ["fleet", *words])
         if ran is None or ran.returncode != 0:
-            raise RuntimeError(f"fleet {' '.join(words)} ends with {ran and ran.returncode}: {ran and ran.stderr.decode()[:300]}")
+            raise RuntimeError(f"fleet {' '.join(words)} ends with {ran and ran.returncode}: "
+                               f"{ran and ran.stderr.decode()[:300]}")
 
     def plan_words(self):
         return ["plan", *self.later, "-o", "F", "--no-reports", *self.extra]
@@ -162,8 +164,10 @@ class Fleet:
         cut = [name for name in self.results if str(Path(name).parent) in units and name not in found]
         if cut:
             return f"results without all of their files: {cut}"
-        # What refuses to be removed stays, and so does what is begun where a worker is killed, or can look into no folder any more.
-        cannot_clean = fault.startswith(("kill", "unlink", "malloc")) or (fault.startswith("open") and fault.endswith("+"))
+        # What refuses to be removed stays, and so does what is begun where a worker is killed, or can look
+        # into no folder any more.
+        cannot_clean = fault.startswith(("kill", "unlink", "malloc")) or (fault.startswith("open")
+                                                                          and fault.endswith("+"))
         if not cannot_clean and hidden(folder / "F"):
             return f"exit {code}, left behind: {hidden(folder / 'F')}"
         if self.plan(folder) not in self.plans:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How the program was built and linked, by readelf: no fixed addresses, tables read-only after the start, no stack that runs, guards in functions
-and in the C library's copies.
+"""How the program was built and linked, by readelf: no fixed addresses, tables read-only after the start, no
+stack that runs, guards in functions and in the C library's copies.
 
 usage: hardening_test.py PROGRAM
 

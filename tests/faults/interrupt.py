@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Every verb at a long job, interrupted at several moments: it ends by the signal's code, says one sentence and leaves nothing behind.
+"""Every verb at a long job, interrupted at several moments: it ends by the signal's code, says one sentence
+and leaves nothing behind.
 
 usage: interrupt.py PROGRAM [--moments S,S…] [--times]
 
-A job that has not ended five seconds after the signal hangs. --times prints how long each took instead of nothing: for a quiet machine, never
-asserted. Exit 1 where something is wrong.
+A job that has not ended five seconds after the signal hangs. --times prints how long each took instead of
+nothing: for a quiet machine, never asserted. Exit 1 where something is wrong.
 """
 
 import argparse
@@ -34,7 +35,8 @@ def endless_log(path, names):
     with open(path, "w") as file:
         file.truncate(16 << 30)
     channels = [{"name": name} for name in names]
-    Path(f"{path}.json").write_text(json.dumps({"dtype": "f64", "endian": "little", "rate_hz": 100, "channels": channels}))
+    Path(f"{path}.json").write_text(json.dumps({"dtype": "f64", "endian": "little", "rate_hz": 100,
+                                                "channels": channels}))
 
 
 def prepare(folder, program):
@@ -45,7 +47,8 @@ def prepare(folder, program):
         "white_noise: {value: 0.1}\nbias_instability: {value: 0.01}\n"
     )
     text_log(folder / "small.csv", 400, 3, 2)
-    learn = [program, "replay", "small.csv", "--sensors", "s0,s1", "--reference", "s2", "--learning", "0..2", "-o", "learnt", "-q"]
+    learn = [program, "replay", "small.csv", "--sensors", "s0,s1", "--reference", "s2", "--learning", "0..2", "-o",
+             "learnt", "-q"]
     subprocess.run(learn + ["--algorithms", "mean"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
     endless_log(folder / "long3.f64", ["s0", "s1", "s2"])
 
@@ -69,7 +72,8 @@ def interrupted(program, folder, words, moment):
     out = folder / "out"
     out.mkdir()
     try:
-        job = subprocess.Popen([program, *words], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        job = subprocess.Popen([program, *words], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE)
         time.sleep(moment)
         over = job.poll() is not None
         sent = time.monotonic()

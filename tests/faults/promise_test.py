@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""What docs/security.md promises, looked at from outside: each verb reads the files that it was named, writes where it was told to, opens no
-socket and starts no program.
+"""What docs/security.md promises, looked at from outside: each verb reads the files that it was named, writes
+where it was told to, opens no socket and starts no program.
 
 usage: promise_test.py PROGRAM
 
-USER is set: where it is not, glog (which Ceres brings) asks the system for the user's name before main, perhaps through the local socket of
-nscd. Needs strace; exit 77 where it is missing or may not trace.
+USER is set: where it is not, glog (which Ceres brings) asks the system for the user's name before main,
+perhaps through the local socket of nscd. Needs strace; exit 77 where it is missing or may not trace.
 """
 
 import os
@@ -19,24 +19,29 @@ from pathlib import Path
 from fault_loops import VERBS, inputs
 
 # What the loader, the C library, TBB (how many processors?) and the terminal look at.
-SYSTEM = ("/lib", "/usr/", "/etc/ld.so", "/etc/ssl/", "/proc/self/", "/proc/sys/", "/proc/meminfo", "/proc/cpuinfo", "/proc/cgroups", "/proc/mounts",
+SYSTEM = ("/lib", "/usr/", "/etc/ld.so", "/etc/ssl/", "/proc/self/", "/proc/sys/", "/proc/meminfo", "/proc/cpuinfo",
+          "/proc/cgroups", "/proc/mounts",
           "/sys/devices/system/", "/sys/fs/cgroup", "/sys/kernel/mm", "/dev/null", "/dev/tty")
-NEVER = {"socket", "connect", "bind", "listen", "accept", "accept4", "sendto", "sendmsg", "fork", "vfork", "ptrace", "chmod", "fchmodat", "chown", "lchown", "symlink",
+NEVER = {"socket", "connect", "bind", "listen", "accept", "accept4", "sendto", "sendmsg", "fork", "vfork", "ptrace",
+         "chmod", "fchmodat", "chown", "lchown", "symlink",
          "symlinkat", "mknod", "mknodat", "mount", "setuid", "kexec_load", "memfd_create"}
-CHANGES = {"rename", "renameat", "renameat2", "link", "linkat", "unlink", "unlinkat", "mkdir", "mkdirat", "rmdir", "truncate", "utimensat"}
+CHANGES = {"rename", "renameat", "renameat2", "link", "linkat", "unlink", "unlinkat", "mkdir", "mkdirat", "rmdir",
+           "truncate", "utimensat"}
 CALL = re.compile(r"^(?:\d+ +)?(?:\[pid +\d+\] )?(\w+)\((.*)$")
 NAME = re.compile(r'"((?:[^"\\]|\\.)*)"')
 
 
 def trace(program, words, folder):
     log = Path(str(folder) + ".strace")
-    ran = subprocess.run(["strace", "-f", "-qq", "-e", "signal=none", "-e", "trace=%file,%network,%process,kill", "-o", log, program, *words], cwd=folder,
+    ran = subprocess.run(["strace", "-f", "-qq", "-e", "signal=none", "-e", "trace=%file,%network,%process,kill",
+                          "-o", log, program, *words], cwd=folder,
                          stdin=subprocess.DEVNULL, capture_output=True, env=dict(os.environ, USER="somebody"))
     return ran, log.read_text(errors="replace").splitlines() if log.exists() else []
 
 
 def below(name, folder):
-    return Path(name) == folder or folder in Path(name).parents or not name.startswith("/") and ".." not in Path(name).parts
+    relative = not name.startswith("/") and ".." not in Path(name).parts
+    return Path(name) == folder or folder in Path(name).parents or relative
 
 
 def wrong_in(lines, folder):
@@ -57,7 +62,8 @@ def wrong_in(lines, folder):
             wrong.append(line)
         elif what in ("open", "openat", "creat"):
             writes = re.search(r"O_WRONLY|O_RDWR|O_CREAT|O_TRUNC", rest)
-            if not all(below(name, folder) or (not writes and name.startswith(SYSTEM)) or name in ("/dev/null", "/dev/tty") for name in names[:1]):
+            if not all(below(name, folder) or (not writes and name.startswith(SYSTEM))
+                       or name in ("/dev/null", "/dev/tty") for name in names[:1]):
                 wrong.append(line)
     if programs != 1:
         wrong.append(f"{programs} programs were started")
@@ -66,7 +72,8 @@ def wrong_in(lines, folder):
 
 def main():
     program = str(Path(sys.argv[1]).resolve())
-    if not shutil.which("strace") or subprocess.run(["strace", "-qq", "-o", "/dev/null", "true"], capture_output=True).returncode != 0:
+    if not shutil.which("strace") or subprocess.run(["strace", "-qq", "-o", "/dev/null", "true"],
+                                                    capture_output=True).returncode != 0:
         print("SKIPPED: no strace, or it may not trace")
         sys.exit(77)
     bad = 0

@@ -124,8 +124,8 @@ TEST_CASE("with the length of the record, a curve in another unit has the same i
 
 TEST_CASE(
     "with the length of the record, white noise at long times is known as well as weights tell") {
-  // Generalised least squares of one term: the variance of ln theta is 1 / (1' C^-1 1), C that of the logarithms of chi-squares. The points
-  // stand where these are in the mean.
+  // Generalised least squares of one term: the variance of ln theta is 1 / (1' C^-1 1), C that of
+  // the logarithms of chi-squares. The points stand where these are in the mean.
   DigitisedCurve curve;
   curve.rate_hz = 1;
   curve.duration_s = 1000;
@@ -397,7 +397,8 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
         text << "rms " << rms_log10(*fit) << " p " << fit->goodness.p << "\n";
       }
       UNSCOPED_INFO(name << " " << channel << "\n" << text.str());
-      // What is known is said: a value counts as detected only where the terms describe the points and it is known to 30 %.
+      // What is known is said: a value counts as detected only where the terms describe the points
+      // and it is known to 30 %.
       for (const NoiseFit* fit : {&alone, &weighted, &stated})
         for (const Coefficient& c : fit->term) {
           if (c.status == Status::detected) {
@@ -415,8 +416,9 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
 }
 
 TEST_CASE("curve fit: the last point, of one degree of freedom, does not cost the white noise") {
-  // Overlapping Allan deviation of 655.36 s at 50 Hz, simulated (N 0.0040, B 0.0043, K 0.0014): the longest averaging time has one
-  // term, here a sixth of its expectation. Its logarithm is that of a chi-square, far from normal.
+  // Overlapping Allan deviation of 655.36 s at 50 Hz, simulated (N 0.0040, B 0.0043, K 0.0014): the
+  // longest averaging time has one term, here a sixth of its expectation. Its logarithm is that of
+  // a chi-square, far from normal.
   DigitisedCurve curve;
   curve.is_allan = true;
   curve.rate_hz = 50;

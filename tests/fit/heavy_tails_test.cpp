@@ -9,7 +9,8 @@ using namespace libchar;
 
 namespace {
 
-/// Independent samples of unit variance: Laplace's distribution has an excess kurtosis of 3, a difference of exponentials.
+/// Independent samples of unit variance: Laplace's distribution has an excess kurtosis of 3, a
+/// difference of exponentials.
 std::vector<double> laplace_record(std::size_t n, std::uint64_t seed) {
   test::Gaussian gauss(seed);
   std::vector<double> y(n);

@@ -28,8 +28,8 @@ TEST_CASE("power bins: every coefficient of the record counts once, wherever it 
          bins_in_blocks({record.begin(), record.begin() + static_cast<std::ptrdiff_t>(samples)}))
       count += bin.dof;
     CAPTURE(samples);
-    // The mean is none of them, and where the ways of a long record meet a few are left out: up to eight samples at its end, and
-    // a coefficient where the bands touch.
+    // The mean is none of them, and where the ways of a long record meet a few are left out: up to
+    // eight samples at its end, and a coefficient where the bands touch.
     CHECK(count <= static_cast<double>(samples - 1));
     CHECK(count >= static_cast<double>(samples) - 12);
   }

@@ -1,5 +1,5 @@
-// NIST's nonlinear reference problems (StRD, ../shared/oracle/strd) with the settings that our fits give to Ceres: 27 problems from two starts
-// each, and what Ceres' own tolerances make of them.
+// NIST's nonlinear reference problems (StRD, ../shared/oracle/strd) with the settings that our fits
+// give to Ceres: 27 problems from two starts each, and what Ceres' own tolerances make of them.
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""Every file of a fleet with a bit turned or its end cut off, through the program: damaged_files.py PROGRAM [--step 37] [--end 40]
+"""Every file of a fleet with a bit turned or its end cut off, through the program: damaged_files.py PROGRAM
+[--step 37] [--end 40]
 
-A fleet of three small logs and one in stretches is planned and run. Then records, partial states, log.seen, tasks, plan and manifests are
-damaged, one at a time, at every STEP-th byte and cut there. Right is
-  record, state, log.seen   `status` counts that unit as missing and no other; `run` and `merge` end in the report of the fleet without damage
+A fleet of three small logs and one in stretches is planned and run. Then records, partial states, log.seen,
+tasks, plan and manifests are damaged, one at a time, at every STEP-th byte and cut there. Right is
+  record, state, log.seen   `status` counts that unit as missing and no other; `run` and `merge` end in the
+  report of the fleet without damage
   plan                      refused in one sentence (E0784; of its first line, what is wrong there)
-  task                      exit 0, 3 or 75 in at most one sentence, and no result is there that is not one of the fleet's
+  task                      exit 0, 3 or 75 in at most one sentence, and no result is there that is not one of
+                            the fleet's
   manifest                  planned, or refused in one sentence
 and no report of a sanitizer. `run` and `merge` follow at every END-th damage (they take most of the time).
 """
@@ -46,7 +49,8 @@ class Trial:
         (folder / "m.yaml").write_text(YAML)
         (folder / "m.csv").write_text(TABLE)
         logs = [*(str(folder / f"d{seed}.csv") for seed in range(3)), str(folder / "long.npy")]
-        self.checked("plan", *logs, "--rate", "100", "--split-above", "1MiB", "--stretch", "4MiB", "-o", str(self.fleet), "--no-reports")
+        self.checked("plan", *logs, "--rate", "100", "--split-above", "1MiB", "--stretch", "4MiB", "-o",
+                     str(self.fleet), "--no-reports")
         self.checked("run", str(self.fleet))
         self.report = self.merged(self.fleet)
         self.units = {}
@@ -56,12 +60,14 @@ class Trial:
         self.results = self.results_of(self.fleet)
 
     def call(self, *words):
-        return subprocess.run([self.program, "fleet", *words, "--quiet"], capture_output=True, stdin=subprocess.DEVNULL, timeout=300)
+        return subprocess.run([self.program, "fleet", *words, "--quiet"], capture_output=True,
+                              stdin=subprocess.DEVNULL, timeout=300)
 
     def checked(self, *words):
         ran = self.call(*words)
         if ran.returncode != 0:
-            raise RuntimeError(f"fleet {' '.join(words)}: exit {ran.returncode}: {ran.stderr.decode(errors='replace')[:500]}")
+            raise RuntimeError(f"fleet {' '.join(words)}: exit {ran.returncode}: "
+                               f"{ran.stderr.decode(errors='replace')[:500]}")
         return ran
 
     def merged(self, fleet):
@@ -83,9 +89,12 @@ class Trial:
         for unit, (task, kind) in self.units.items():
             of_kind.setdefault(kind, (unit, task))
         result = lambda kind: f"results/{of_kind[kind][0][:2]}/{of_kind[kind][0]}"
-        files = [("record", f"{result('log')}/device.record"), ("record", f"{result('join')}/device.record"), ("state", f"{result('stretch')}/state-1.bin"),
-                 ("seen", f"{result('stretch')}/log.seen"), ("plan", "plan.jsonl"), ("task", f"tasks/{of_kind['log'][1]}"),
-                 ("task", f"tasks/{of_kind['stretch'][1]}"), ("task", f"tasks/{of_kind['join'][1]}"), ("manifest", "../m.yaml"), ("manifest", "../m.csv")]
+        files = [("record", f"{result('log')}/device.record"), ("record", f"{result('join')}/device.record"),
+                 ("state", f"{result('stretch')}/state-1.bin"),
+                 ("seen", f"{result('stretch')}/log.seen"), ("plan", "plan.jsonl"),
+                 ("task", f"tasks/{of_kind['log'][1]}"),
+                 ("task", f"tasks/{of_kind['stretch'][1]}"), ("task", f"tasks/{of_kind['join'][1]}"),
+                 ("manifest", "../m.yaml"), ("manifest", "../m.csv")]
         number = 0
         for what, name in files:
             size = (self.fleet / name).stat().st_size
@@ -116,13 +125,15 @@ class Trial:
             for seed in range(3):
                 shutil.copy(self.folder / f"d{seed}.csv", copy)
             (copy / pathlib.Path(name).name).write_bytes(data)
-            return self.wrong_answer(self.call("plan", str(copy / pathlib.Path(name).name), "-o", str(copy / "F")), {0, 2, 3})
+            return self.wrong_answer(self.call("plan", str(copy / pathlib.Path(name).name), "-o", str(copy / "F")),
+                                     {0, 2, 3})
         shutil.copytree(self.fleet, copy)
         (copy / name).write_bytes(data)
         if what == "plan":
             ran = self.call("status", str(copy))
             head = place <= (self.fleet / name).read_bytes().index(b"\n")
-            return self.wrong_answer(ran, {3}) or ("" if head or b"E0784" in ran.stderr else ran.stderr.decode(errors="replace"))
+            return self.wrong_answer(ran, {3}) or ("" if head or b"E0784" in ran.stderr
+                                                   else ran.stderr.decode(errors="replace"))
         return self.wrong_task(copy, name) if what == "task" else self.wrong_result(copy, number, what, name)
 
     @staticmethod
@@ -133,7 +144,9 @@ class Trial:
         if ran.returncode not in codes:
             return f"exit {ran.returncode}: {said[:500]}"
         lines = [line for line in said.splitlines() if SAID.search(line)]
-        return "" if len(lines) == (ran.returncode != 0) else f"exit {ran.returncode} with {len(lines)} sentences: {said[:500]}"
+        if len(lines) == (ran.returncode != 0):
+            return ""
+        return f"exit {ran.returncode} with {len(lines)} sentences: {said[:500]}"
 
     def wrong_task(self, copy, name):
         # Its own result is gone, so that there is something to do.
@@ -186,8 +199,10 @@ def main():
             counts[case[1]] = counts.get(case[1], 0) + 1
             if wrong:
                 bad += 1
-                print(f"{case[1]} {case[2]} {'cut at' if case[4] else 'a bit turned in'} {case[3]}: {wrong}", flush=True)
-    print(", ".join(f"{count} of {what}" for what, count in counts.items()) + f": {sum(counts.values())} damaged files, {bad} wrong")
+                print(f"{case[1]} {case[2]} {'cut at' if case[4] else 'a bit turned in'} {case[3]}: {wrong}",
+                      flush=True)
+    print(", ".join(f"{count} of {what}" for what, count in counts.items())
+          + f": {sum(counts.values())} damaged files, {bad} wrong")
     sys.exit(1 if bad or not counts else 0)
 
 

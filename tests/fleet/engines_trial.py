@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""A fleet on a real engine, with workers killed at random, against one process alone: the merged reports have to be the same bytes.
+"""A fleet on a real engine, with workers killed at random, against one process alone: the merged reports have
+to be the same bytes.
 
-usage: engines_trial.py PROGRAM FOLDER --engine slurm|snakemake|parallel [--devices N] [--samples S] [--kills K] [--recordings DIR] [--seed X] [--job S]
+usage: engines_trial.py PROGRAM FOLDER --engine slurm|snakemake|parallel [--devices N] [--samples S] [--kills
+       K] [--recordings DIR] [--seed X] [--job S]
 
-Writes N simulated logs (three channels of white noise at 100 Hz) into FOLDER/logs, plans them with the recordings of DIR (those that can be
-read without options), runs the plan in one process (FOLDER/alone) and on the engine (FOLDER/ENGINE), kills K of its workers (kill -9), exports again
-what is missing until nothing is, merges both, and compares. Prints the figures; exit 1 where something differs. An engine of that name must
-be installed and, for Slurm, its daemons running with the partitions `short` and `long`.
+Writes N simulated logs (three channels of white noise at 100 Hz) into FOLDER/logs, plans them with the
+recordings of DIR (those that can be read without options), runs the plan in one process (FOLDER/alone) and on
+the engine (FOLDER/ENGINE), kills K of its workers (kill -9), exports again what is missing until nothing is,
+merges both, and compares. Prints the figures; exit 1 where something differs. An engine of that name must be
+installed and, for Slurm, its daemons running with the partitions `short` and `long`.
 """
 
 import argparse
@@ -84,13 +87,16 @@ def under_way(engine, process):
 def on_engine(options, fleet, rng):
     kills, rounds, begun = 0, 0, time.time()
     while True:
-        code, text = call([options.program, "fleet", "export", fleet, "--to", options.engine, "--job", f"{options.job}s", "--program", options.program])
+        code, text = call([options.program, "fleet", "export", fleet, "--to", options.engine, "--job",
+                           f"{options.job}s", "--program", options.program])
         assert code == 0, text
-        if subprocess.run([options.program, "fleet", "status", fleet, "--list"], capture_output=True, text=True).stdout == "":
+        if subprocess.run([options.program, "fleet", "status", fleet, "--list"], capture_output=True,
+                          text=True).stdout == "":
             return kills, rounds, time.time() - begun
         assert rounds < 20, "the engine does not get to an end"
         rounds += 1
-        process = subprocess.Popen(start(options.engine, fleet), cwd=fleet, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen(start(options.engine, fleet), cwd=fleet, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
         time.sleep(1)
         while under_way(options.engine, process):
             time.sleep(rng.uniform(0.1, 0.6))
@@ -121,7 +127,8 @@ def main():
     options = parser.parse_args()
     rows = simulate(options.folder / "logs", options.devices, options.samples, options.seed)
     if options.recordings:
-        rows += [f"{p.stem},{p},recorded,real" for p in sorted(options.recordings.iterdir()) if p.suffix in (".csv", ".npy")]
+        rows += [f"{p.stem},{p},recorded,real" for p in sorted(options.recordings.iterdir())
+                 if p.suffix in (".csv", ".npy")]
     manifest = options.folder / "logs/manifest.csv"
     manifest.write_text("\n".join(rows) + "\n")
     # One folder after the other has the same name: what a report says of its fleet is the same then.
@@ -131,7 +138,8 @@ def main():
         shutil.rmtree(place, ignore_errors=True)
         place.mkdir()
         begun = time.time()
-        code, text = call([options.program, "fleet", "plan", manifest, "-o", "fleet", "--rate", "100", "--skip-unreadable"], cwd=place)
+        code, text = call([options.program, "fleet", "plan", manifest, "-o", "fleet", "--rate", "100",
+                           "--skip-unreadable"], cwd=place)
         assert code == 0, text
         seconds.append(time.time() - begun)
         if way == "alone":
@@ -151,7 +159,8 @@ def main():
     equal = same(*reports)
     print(f"planned in {seconds[0]:.1f} s, run by one process in {seconds[1]:.1f} s, merged in {seconds[2]:.1f} s: "
           f"planning and merging are {100 * (seconds[0] + seconds[2]) / seconds[1]:.1f} % of the work")
-    print(f"{options.engine}: {engine_s:.1f} s in {rounds} round{'s' * (rounds != 1)}, {kills} workers killed, {len(left)} folders left of them")
+    print(f"{options.engine}: {engine_s:.1f} s in {rounds} round{'s' * (rounds != 1)}, {kills} workers killed, "
+          f"{len(left)} folders left of them")
     print("the merged reports are " + ("the same bytes" if equal else "NOT the same"))
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     print(f"largest process: {peak:.0f} MB")

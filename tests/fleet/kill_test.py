@@ -1,4 +1,5 @@
-"""Workers of a fleet that are killed, that work on the same units, that have no room to write: in the end the results are those of one process.
+"""Workers of a fleet that are killed, that work on the same units, that have no room to write: in the end the
+results are those of one process.
 
 usage: kill_test.py PROGRAM
 """
@@ -24,7 +25,8 @@ def expect(holds, what):
 
 def log_text(seed, rows):
     own = random.Random(seed)
-    return "t[s],gx[deg/s],gy[deg/s]\n" + "".join(f"{k / 100:.2f},{own.gauss(0, 1):.6f},{own.gauss(0, 2):.6f}\n" for k in range(rows))
+    return "t[s],gx[deg/s],gy[deg/s]\n" + "".join(f"{k / 100:.2f},{own.gauss(0, 1):.6f},{own.gauss(0, 2):.6f}\n"
+                                                  for k in range(rows))
 
 
 def call(*words, limit=None):
@@ -34,7 +36,8 @@ def call(*words, limit=None):
 
 def results(fleet):
     """Content of every published result by its path."""
-    return {p.relative_to(fleet).as_posix(): p.read_bytes() for p in sorted((fleet / "results").rglob("*")) if p.is_file()}
+    return {p.relative_to(fleet).as_posix(): p.read_bytes() for p in sorted((fleet / "results").rglob("*"))
+            if p.is_file()}
 
 
 with tempfile.TemporaryDirectory(prefix="libchar-kill-") as name:
@@ -53,7 +56,8 @@ with tempfile.TemporaryDirectory(prefix="libchar-kill-") as name:
 
     kills = 0
     while kills < 12:
-        workers = [subprocess.Popen([program, "fleet", "run", str(many)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(3)]
+        workers = [subprocess.Popen([program, "fleet", "run", str(many)], stdout=subprocess.DEVNULL,
+                                    stderr=subprocess.DEVNULL) for _ in range(3)]
         time.sleep(rng.uniform(0.01, 0.25))
         for worker in workers:
             kills += worker.poll() is None
@@ -77,7 +81,8 @@ with tempfile.TemporaryDirectory(prefix="libchar-kill-") as name:
     ran = call("run", str(full), limit=20000)
     expect(ran.returncode == 75, f"no room to write: exit code {ran.returncode}: {ran.stderr}")
     expect(not list((full / "results").glob("*/*")), "no room to write: something is left")
-    expect(call("run", str(full)).returncode == 0 and results(full) == wanted, "where there was no room before the results are others")
+    expect(call("run", str(full)).returncode == 0 and results(full) == wanted,
+           "where there was no room before the results are others")
 
 print("\n".join(faults) or f"{kills} workers killed, the same results")
 sys.exit(bool(faults))

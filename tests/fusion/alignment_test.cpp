@@ -1,14 +1,13 @@
 // Alignment on simulated arrays whose delays, biases, gains and misalignments are known.
-#include "libchar/fusion/alignment.hpp"
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fusion/aligner.hpp"
 #include "libchar/fusion/alignment_learning.hpp"
-#include "libchar/fusion/error_budget.hpp"
+#include "libchar/fusion/budget_meter.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

@@ -86,8 +86,8 @@ TEST_CASE("blind calibration: taking off the noise removes the bias of the gains
 }
 
 TEST_CASE("blind calibration: of two channels of unknown noise no noise is taken off") {
-  // One factor and two noises cannot be told from three moments. On the Gram matrix, with the first gain one, the other inverse
-  // gain is the regression of the first channel on the second.
+  // One factor and two noises cannot be told from three moments. On the Gram matrix, with the first
+  // gain one, the other inverse gain is the regression of the first channel on the second.
   test::Gaussian gauss(8);
   Eigen::MatrixXd y(2, 1000);
   for (Eigen::Index k = 0; k < y.cols(); ++k) {

@@ -6,6 +6,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "tests/support/noise.hpp"
 

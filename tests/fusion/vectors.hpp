@@ -10,6 +10,7 @@
 
 #include "libchar/core/json.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "tests/support/shared.hpp"
 #include "tests/support/table.hpp"
 

@@ -1,9 +1,11 @@
-// The fault detector in front of estimates with fixed weights: sensors that fail are left out, and nothing else changes.
+// The fault detector in front of estimates with fixed weights: sensors that fail are left out, and
+// nothing else changes.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "tests/fusion/scenes.hpp"
 #include "tests/fusion/vectors.hpp"

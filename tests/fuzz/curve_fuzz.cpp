@@ -1,4 +1,5 @@
-// Any bytes as a table of curves, Allan deviations when the first byte is odd, spectra else: what is read are numbers, point by point.
+// Any bytes as a table of curves, Allan deviations when the first byte is odd, spectra else: what
+// is read are numbers, point by point.
 
 #include <cmath>
 

@@ -1,5 +1,6 @@
-// Any bytes as what a figure is drawn from: a document in JSON or YAML (a report, curves, a sensor model) or a table of curves. Every figure
-// that can be made of it is drawn: numbers in the SVG are numbers, its texts stay between its tags, and the second drawing is the first.
+// Any bytes as what a figure is drawn from: a document in JSON or YAML (a report, curves, a sensor
+// model) or a table of curves. Every figure that can be made of it is drawn: numbers in the SVG are
+// numbers, its texts stay between its tags, and the second drawing is the first.
 
 #include <unistd.h>
 

@@ -41,7 +41,8 @@ inline libchar::FleetUnit named_content(const libchar::Document& document) {
   return unit;
 }
 
-/// The task under the name of its content: else nothing but the name would be looked at. Text that is no task stays as it is.
+/// The task under the name of its content: else nothing but the name would be looked at. Text that
+/// is no task stays as it is.
 inline std::string named_task(std::string_view text) {
   using namespace libchar;
   try {

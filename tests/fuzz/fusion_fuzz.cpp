@@ -1,5 +1,5 @@
-// Any bytes as fusion.yaml: JSON when the first byte is odd, YAML else. What is read must be written, and what is written must read back
-// to the same text.
+// Any bytes as fusion.yaml: JSON when the first byte is odd, YAML else. What is read must be
+// written, and what is written must read back to the same text.
 
 #include "libchar/replay/fusion_file.hpp"
 #include "tests/fuzz/fuzz_support.hpp"

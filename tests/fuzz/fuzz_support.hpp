@@ -25,7 +25,8 @@ inline void expect(bool holds, const char* what) {
   if (!holds) fail(what, "", "");
 }
 
-/// A refusal is one line. What the program itself would call an internal error is any other exception, which ends the target.
+/// A refusal is one line. What the program itself would call an internal error is any other
+/// exception, which ends the target.
 inline std::string said(const libchar::Error& error) {
   const std::string text = error.what();
   expect(text.find('\n') == std::string::npos, "a refusal in several lines");
@@ -53,7 +54,8 @@ class Input {
   std::string_view rest_;
 };
 
-/// A document that is read, written, and read back to the same text. `read_and_write(text, file)` gives what is written.
+/// A document that is read, written, and read back to the same text. `read_and_write(text, file)`
+/// gives what is written.
 template <class Function>
 void round_trip(const std::uint8_t* data, std::size_t size, Function read_and_write) {
   if (size == 0) return;

@@ -1,5 +1,5 @@
-// Any bytes as a manifest, by the first byte YAML, JSON or a table: every device has a name, a log by its whole path and options, and a
-// manifest that says the same in JSON has the same devices.
+// Any bytes as a manifest, by the first byte YAML, JSON or a table: every device has a name, a log
+// by its whole path and options, and a manifest that says the same in JSON has the same devices.
 
 #include <cmath>
 

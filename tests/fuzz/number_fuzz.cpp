@@ -1,5 +1,6 @@
-// Any text as numbers, by every parser of numbers: cells and stamps of a CSV file, one at a time and whole rows by vector instructions,
-// and numbers as one types them. The judges are strtod and 128-bit integers, behind a grammar that is written out here.
+// Any text as numbers, by every parser of numbers: cells and stamps of a CSV file, one at a time
+// and whole rows by vector instructions, and numbers as one types them. The judges are strtod and
+// 128-bit integers, behind a grammar that is written out here.
 
 #include <cmath>
 #include <optional>

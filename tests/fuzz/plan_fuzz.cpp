@@ -1,5 +1,5 @@
-// Any bytes as a fleet's plan, its tasks under the names of their content unless the first byte is odd: what is read is written, and reads
-// back as the same plan.
+// Any bytes as a fleet's plan, its tasks under the names of their content unless the first byte is
+// odd: what is read is written, and reads back as the same plan.
 
 #include "libchar/fleet/plan.hpp"
 #include "tests/fuzz/fleet_support.hpp"

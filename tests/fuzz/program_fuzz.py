@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""The whole program on broken files: program_fuzz.py PROGRAM SEEDS [--seconds 60] [--runs N] [--seed 1] [--findings FOLDER]
+"""The whole program on broken files: program_fuzz.py PROGRAM SEEDS [--seconds 60] [--runs N] [--seed 1]
+[--findings FOLDER]
 
-Takes files of SEEDS (seeds.py), breaks each a little, and runs a verb over it. Asked of every run: an exit code that the README lists, no
-report of a sanitizer, no "internal error", no hang, one sentence of refusal that names a code or the file, and no output where the verb
-failed. An input that breaks one of these is kept in FOLDER with its command. PROGRAM is a build with LIBCHAR_SANITIZE; an ordinary one
-does, faster and blinder."""
+Takes files of SEEDS (seeds.py), breaks each a little, and runs a verb over it. Asked of every run: an exit
+code that the README lists, no report of a sanitizer, no "internal error", no hang, one sentence of refusal
+that names a code or the file, and no output where the verb failed. An input that breaks one of these is kept
+in FOLDER with its command. PROGRAM is a build with LIBCHAR_SANITIZE; an ordinary one does, faster and
+blinder."""
 import argparse
 import os
 import pathlib
@@ -20,16 +22,22 @@ import time
 
 ALLOWED = {0, 2, 3, 4, 6}  # 5, "cannot write", is no answer to a bad input
 TIMEOUT = 60
-WORDS = [b"nan", b"inf", b"1e400", b"1e-400", b",", b";", b"\t", b"\r\n", b"\n", b'"', b"#", b"-", b"9223372036854775807", b"-9223372036854775808",
-         b"\0", b"\xff", b"\xef\xbb\xbf", b"[", b"]", b"{", b"}", b": ", b"null", b"0", b"999999999", b"1e-15", b"&a", b"*a"]
+WORDS = [b"nan", b"inf", b"1e400", b"1e-400", b",", b";", b"\t", b"\r\n", b"\n", b'"', b"#", b"-",
+         b"9223372036854775807", b"-9223372036854775808",
+         b"\0", b"\xff", b"\xef\xbb\xbf", b"[", b"]", b"{", b"}", b": ", b"null", b"0", b"999999999", b"1e-15",
+         b"&a", b"*a"]
 # Suffix and verbs of each kind of seed; LOG stands for the broken file, OUT for a new folder or file.
-LOG_VERBS = [["inspect", "LOG"], ["inspect", "LOG", "--json"], ["allan", "LOG"], ["psd", "LOG"], ["fit", "LOG"], ["convert", "LOG", "-o", "OUT.csv"],
-             ["convert", "LOG", "-o", "OUT.npy"], ["convert", "LOG", "-o", "OUT.f64"], ["characterize", "LOG", "-o", "OUT"],
+LOG_VERBS = [["inspect", "LOG"], ["inspect", "LOG", "--json"], ["allan", "LOG"], ["psd", "LOG"], ["fit", "LOG"],
+             ["convert", "LOG", "-o", "OUT.csv"],
+             ["convert", "LOG", "-o", "OUT.npy"], ["convert", "LOG", "-o", "OUT.f64"],
+             ["characterize", "LOG", "-o", "OUT"],
              ["inspect", "LOG", "--strict"], ["allan", "LOG", "--rate", "100"]]
 KINDS = {
     "csv": (".csv", 2, LOG_VERBS),
-    "npy": (".npy", 1, [*LOG_VERBS, ["inspect", "LOG", "--rate", "100"], ["characterize", "LOG", "-o", "OUT", "--rate", "100"]]),
-    "model": (".yaml", 1, [["model", "LOG"], ["model", "LOG", "--to", "kalibr"], ["simulate", "LOG", "-o", "OUT.csv", "--duration", "1s"]]),
+    "npy": (".npy", 1, [*LOG_VERBS, ["inspect", "LOG", "--rate", "100"],
+                        ["characterize", "LOG", "-o", "OUT", "--rate", "100"]]),
+    "model": (".yaml", 1, [["model", "LOG"], ["model", "LOG", "--to", "kalibr"],
+                           ["simulate", "LOG", "-o", "OUT.csv", "--duration", "1s"]]),
     "scene": (".yaml", 1, [["replay", "LOG", "--explain"], ["replay", "LOG", "-o", "OUT"]]),
     "report": (".json", 1, [["compare", "LOG", "LOG"]]),
     "limits": (".yaml", 1, [["characterize", "FIXTURE", "-o", "OUT", "--limits", "LOG"]]),
@@ -82,7 +90,8 @@ def wrong(code, out, err, outputs):
         return "hang"
     if code not in ALLOWED:
         return f"exit code {code}"
-    if re.search(r"sensorchar: internal error|terminate called|Assertion|what\(\)", text + out[:2000].decode(errors="replace")):
+    if re.search(r"sensorchar: internal error|terminate called|Assertion|what\(\)",
+                 text + out[:2000].decode(errors="replace")):
         return "internal error"
     if code in (2, 3, 4):
         errors = [line for line in text.splitlines() if "error" in line]
@@ -104,10 +113,13 @@ def one_run(arguments, seeds, generator, scratch):
         shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
     log = scratch / ("log" + suffix)
     log.write_bytes(data)
-    words = [{"LOG": str(log), "FIXTURE": str(FIXTURE)}.get(word, word.replace("OUT", str(scratch / "out"))) for word in generator.choice(verbs)]
+    words = [{"LOG": str(log), "FIXTURE": str(FIXTURE)}.get(word, word.replace("OUT", str(scratch / "out")))
+             for word in generator.choice(verbs)]
     try:
-        done = subprocess.run([arguments.program, *words], capture_output=True, timeout=TIMEOUT, stdin=subprocess.DEVNULL, cwd=scratch,
-                              preexec_fn=limits(arguments.sanitized), env={**os.environ, "ASAN_OPTIONS": "allocator_may_return_null=0"})
+        done = subprocess.run([arguments.program, *words], capture_output=True, timeout=TIMEOUT,
+                              stdin=subprocess.DEVNULL, cwd=scratch,
+                              preexec_fn=limits(arguments.sanitized),
+                              env={**os.environ, "ASAN_OPTIONS": "allocator_may_return_null=0"})
         code, out, err = done.returncode, done.stdout, done.stderr
     except subprocess.TimeoutExpired as slow:
         code, out, err = None, slow.stdout or b"", slow.stderr or b""
@@ -121,7 +133,8 @@ def keep(arguments, number, found, words, log, err):
     name = f"program-{re.sub('[^a-z0-9]+', '_', found)}-{arguments.seed}-{number}"
     shutil.copy(log, folder / (name + log.suffix))
     (folder / (name + ".txt")).write_text(f"{found}: {shlex.join(words)}\n" + err.decode(errors="replace")[-4000:])
-    print(f"FINDING {found}: {shlex.join(words)}\n   kept as {name}{log.suffix}\n   {err.decode(errors='replace')[-300:]}", flush=True)
+    print(f"FINDING {found}: {shlex.join(words)}\n   kept as {name}{log.suffix}\n   "
+          f"{err.decode(errors='replace')[-300:]}", flush=True)
 
 
 def options():
@@ -151,7 +164,8 @@ def main():
             if found:
                 findings += 1
                 keep(arguments, runs, found, words, log, err)
-    print(f"seed {arguments.seed}: exit codes", ", ".join(f"{kind} {code}: {n}" for (kind, code), n in sorted(codes.items(), key=str)))
+    print(f"seed {arguments.seed}: exit codes",
+          ", ".join(f"{kind} {code}: {n}" for (kind, code), n in sorted(codes.items(), key=str)))
     print(f"stat::number_of_executed_units: {runs}\nfindings: {findings}")
     sys.exit(1 if findings else 0)
 

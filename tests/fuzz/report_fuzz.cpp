@@ -1,5 +1,5 @@
-// Any bytes as report.json of a characterization (first byte even) or of a replay (odd). A report compared with itself shows no
-// difference.
+// Any bytes as report.json of a characterization (first byte even) or of a replay (odd). A report
+// compared with itself shows no difference.
 
 #include "libchar/characterize/characterization_comparison.hpp"
 #include "libchar/characterize/reported_characterization.hpp"

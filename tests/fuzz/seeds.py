@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Makes the first inputs of the fuzz targets from the fixtures: seeds.py FOLDER [PROGRAM]
 
-A folder a target in FOLDER, with the bytes before a file that its target takes for choices. Real files come whole and cut, tables in every
-dialect, stamps at the ends of 64 bits. With PROGRAM (sensorchar) there are reports and a fusion.yaml of its own making, shortened."""
+A folder a target in FOLDER, with the bytes before a file that its target takes for choices. Real files come
+whole and cut, tables in every dialect, stamps at the ends of 64 bits. With PROGRAM (sensorchar) there are
+reports and a fusion.yaml of its own making, shortened."""
 import bz2
 import json
 import pathlib
@@ -17,8 +18,10 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 KNOWN = ROOT / "fixtures" / "known" / "badinputs"
 LARGEST = 4000
 EXTREMES = [-2**63, -2**63 + 1, -2**62, -1, 0, 1, 2**53, 2**62, 2**63 - 1, 2**63, 10**18, 1700000000 * 10**9]
-NUMBERS = ["0", "-0", "1e400", "-1e400", "1e-400", "5e-324", "2.2250738585072011e-308", "1.7976931348623157e308", "9007199254740993", "0.1",
-           ".5", "5.", "1,5", "nan", "NA", "inf", "-Infinity", "12345678901234567890123", "0." + "0" * 40 + "1", "1_000", "0x10", "+1", "--1", "1e+",
+NUMBERS = ["0", "-0", "1e400", "-1e400", "1e-400", "5e-324", "2.2250738585072011e-308", "1.7976931348623157e308",
+           "9007199254740993", "0.1",
+           ".5", "5.", "1,5", "nan", "NA", "inf", "-Infinity", "12345678901234567890123", "0." + "0" * 40 + "1",
+           "1_000", "0x10", "+1", "--1", "1e+",
            "0.500000000000000055511151231257827021181583404541015625", "2d", "1.5kHz", "64k", "10us"]
 
 
@@ -37,8 +40,10 @@ def tables():
             if mark == delimiter:
                 continue
             for end in ("\n", "\r\n", "\r"):
-                for header in ("", delimiter.join(["t[s]", "gyro_x[deg/s]", '"a b"']) + end, f"# made{end}t{delimiter}x{delimiter}y{end}"):
-                    yield (header + end.join(delimiter.join(cell.replace(".", mark) for cell in row) for row in rows) + end).encode()
+                for header in ("", delimiter.join(["t[s]", "gyro_x[deg/s]", '"a b"']) + end,
+                               f"# made{end}t{delimiter}x{delimiter}y{end}"):
+                    yield (header + end.join(delimiter.join(cell.replace(".", mark) for cell in row) for row in rows)
+                           + end).encode()
 
 
 def stamps():
@@ -60,7 +65,9 @@ def ros_files():
     body = struct.pack("<d2h", 1.5, 2, -3)
     cdr = b"\0\1\0\0" + body + struct.pack("<I", 3) + b"ab\0\0" + struct.pack("<If", 1, 0.5)
     ros1 = body + text(b"ab") + struct.pack("<If", 1, 0.5)
-    for encoding, data, schema in ((b"cdr", cdr, b"ros2msg"), (b"ros1", ros1, b"ros1msg"), (b"json", b'{"x": 1.5, "a": [1, 2], "stamp": {"sec": 3, "nsec": 4}}', b"jsonschema")):
+    for encoding, data, schema in ((b"cdr", cdr, b"ros2msg"), (b"ros1", ros1, b"ros1msg"),
+                                   (b"json", b'{"x": 1.5, "a": [1, 2], "stamp": {"sec": 3, "nsec": 4}}',
+                                    b"jsonschema")):
         front = (record(3, struct.pack("<H", 1) + text(b"a/B") + text(schema) + text(definition)) +
                  record(4, struct.pack("<HH", 0, 1) + text(b"/t") + text(encoding) + struct.pack("<I", 0)))
         messages = b"".join(record(5, struct.pack("<HIQQ", 0, i, 10**18 + i * 10**7, 0) + data) for i in range(4))
@@ -68,29 +75,37 @@ def ros_files():
         chunks = [("", front + messages)]
         for program in ("lz4", "zstd"):
             try:
-                chunks.append((program, subprocess.run([program, "-c", "-q"], input=front + messages, capture_output=True, check=True).stdout))
+                chunks.append((program, subprocess.run([program, "-c", "-q"], input=front + messages,
+                                                       capture_output=True, check=True).stdout))
             except (OSError, subprocess.CalledProcessError):
                 pass  # not installed: one seed less
         for packed, content in [(None, front + messages)] + chunks:
             if packed is not None:
-                content = record(6, struct.pack("<QQQI", 0, 0, len(front + messages), 0) + text(packed.encode()) + struct.pack("<Q", len(content)) + content)
+                content = record(6, struct.pack("<QQQI", 0, 0, len(front + messages), 0) + text(packed.encode())
+                                 + struct.pack("<Q", len(content)) + content)
             content = begin + content
             place = struct.pack("<QQQQI", 0, 10, len(begin), 0, 0) + text(b"") + struct.pack("<QQ", 0, 0)
-            statistics = struct.pack("<QHIIIIQQI", 4, 1, 1, 0, 0, 1, 10**18, 10**18 + 3 * 10**7, 10) + struct.pack("<HQ", 0, 4)
+            statistics = struct.pack("<QHIIIIQQI", 4, 1, 1, 0, 0, 1, 10**18, 10**18 + 3 * 10**7,
+                                     10) + struct.pack("<HQ", 0, 4)
             end = record(15, bytes(4))
             summary = front + (record(8, place) if packed is not None else b"") + record(11, statistics)
             yield "mcap", content
-            yield "mcap", content + end + summary + record(2, struct.pack("<QQI", len(content) + len(end), 0, 0)) + b"\x89MCAP0\r\n"
+            yield "mcap", content + end + summary + record(2, struct.pack("<QQI", len(content) + len(end), 0,
+                                                                          0)) + b"\x89MCAP0\r\n"
     fields = lambda *pairs: text(b"".join(text(name + b"=" + value) for name, value in pairs))
     connection = (fields((b"op", b"\7"), (b"conn", bytes(4)), (b"topic", b"/t")) +
                   fields((b"type", b"a/B"), (b"md5sum", b"*"), (b"message_definition", definition)))
-    messages = b"".join(fields((b"op", b"\2"), (b"conn", bytes(4)), (b"time", struct.pack("<II", 10**9, i * 10**7))) + text(ros1) for i in range(4))
+    messages = b"".join(fields((b"op", b"\2"), (b"conn", bytes(4)), (b"time", struct.pack("<II", 10**9, i * 10**7)))
+                        + text(ros1) for i in range(4))
     for compression, content in ((b"none", connection + messages), (b"bz2", bz2.compress(connection + messages))):
-        chunk = fields((b"op", b"\5"), (b"compression", compression), (b"size", struct.pack("<I", len(connection + messages)))) + text(content)
-        header = lambda at: fields((b"op", b"\3"), (b"index_pos", struct.pack("<Q", at)), (b"conn_count", struct.pack("<I", 1)),
+        chunk = fields((b"op", b"\5"), (b"compression", compression),
+                       (b"size", struct.pack("<I", len(connection + messages)))) + text(content)
+        header = lambda at: fields((b"op", b"\3"), (b"index_pos", struct.pack("<Q", at)),
+                                   (b"conn_count", struct.pack("<I", 1)),
                                    (b"chunk_count", struct.pack("<I", 1))) + text(b" " * 8)
         begin = b"#ROSBAG V2.0\n" + header(0)
-        info = fields((b"op", b"\6"), (b"ver", struct.pack("<I", 1)), (b"chunk_pos", struct.pack("<Q", len(begin))), (b"start_time", bytes(8)),
+        info = fields((b"op", b"\6"), (b"ver", struct.pack("<I", 1)), (b"chunk_pos", struct.pack("<Q", len(begin))),
+                      (b"start_time", bytes(8)),
                       (b"end_time", bytes(8)), (b"count", struct.pack("<I", 1))) + text(struct.pack("<II", 0, 4))
         yield "bag", begin + chunk
         yield "bag", b"#ROSBAG V2.0\n" + header(len(begin + chunk)) + chunk + connection + info
@@ -100,13 +115,17 @@ def ros_files():
             base = sqlite3.connect(path)
             base.execute("PRAGMA page_size=512")
             base.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT)")
-            base.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB)")
-            base.execute("INSERT INTO topics VALUES (1, '/t', ?, 'cdr')", ("std_msgs/msg/Float64" if version == 3 else "a/msg/B",))
+            base.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data "
+                         "BLOB)")
+            base.execute("INSERT INTO topics VALUES (1, '/t', ?, 'cdr')",
+                         ("std_msgs/msg/Float64" if version == 3 else "a/msg/B",))
             if version == 4:
-                base.execute("CREATE TABLE message_definitions(topic_type TEXT, encoding TEXT, encoded_message_definition TEXT)")
+                base.execute("CREATE TABLE message_definitions(topic_type TEXT, encoding TEXT, "
+                             "encoded_message_definition TEXT)")
                 base.execute("INSERT INTO message_definitions VALUES ('a/msg/B', 'ros2msg', ?)", (definition.decode(),))
             base.executemany("INSERT INTO messages(topic_id, timestamp, data) VALUES (1, ?, ?)",
-                             [(10**18 + i * 10**7, b"\0\1\0\0" + struct.pack("<d", i) if version == 3 else cdr) for i in range(4)])
+                             [(10**18 + i * 10**7, b"\0\1\0\0" + struct.pack("<d", i) if version == 3 else cdr)
+                              for i in range(4)])
             base.commit()
             base.close()
             yield "db3", path.read_bytes()
@@ -130,7 +149,8 @@ def figure_parts(report):
 def made_by(program):
     """(target, first byte, text) of reports and a fusion.yaml that the program writes."""
     with tempfile.TemporaryDirectory() as folder:
-        run = lambda *words: subprocess.run([str(program), *map(str, words)], capture_output=True, cwd=folder, check=False)
+        run = lambda *words: subprocess.run([str(program), *map(str, words)], capture_output=True, cwd=folder,
+                                            check=False)
         run("characterize", ROOT / "fixtures" / "imu_at_rest.csv", "-o", "log")
         run("replay", ROOT / "fixtures" / "scenes" / "rv-3.3-calibrated.yaml", "-o", "scene")
         for name, first in (("log/report.json", 0), ("scene/report.json", 1)):
@@ -165,27 +185,33 @@ def stretch_content(state):
 def fleets_of(program):
     """(target, bytes) of what fleets read: manifests, and the plan, tasks, records and states of a small fleet."""
     generator = random.Random(4)
-    devices = [("A1", "a.csv", "x", "b1", "21.5"), ("B 2", "b;2.npy", "", "", ""), ("Ä", "/logs/c.ulg", "y", "", "-3e1")]
+    devices = [("A1", "a.csv", "x", "b1", "21.5"), ("B 2", "b;2.npy", "", "", ""),
+               ("Ä", "/logs/c.ulg", "y", "", "-3e1")]
     heads = ["device", "log", "type", "batch", "temperature_c"]
     for mark in ",;":
         for end in ("\n", "\r\n"):
             rows = [heads] + [[f'"{cell}"' if mark in cell else cell for cell in row] for row in devices]
             yield "manifest", b"\2" + end.join(mark.join(row) for row in rows).encode()
     tree = {"format": "fleet-manifest", "version": 1,
-            "defaults": {"type": "x", "batch": "b", "limits": "l.yaml", "options": {"reading": {"rate_hz": 200}, "fit": {"threshold": 6}}},
+            "defaults": {"type": "x", "batch": "b", "limits": "l.yaml",
+                         "options": {"reading": {"rate_hz": 200}, "fit": {"threshold": 6}}},
             "devices": [{key: cell for key, cell in zip(heads[:4], row) if cell} for row in devices]}
     tree["devices"][0] |= {"temperature_c": 21.5, "options": {"spectrum": {"segment": 64}}}
     text = json.dumps(tree, ensure_ascii=False).encode()
     yield "manifest", b"\1" + text
     yield "manifest", b"\0" + text  # JSON is YAML
-    yield "manifest", b"\0format: fleet-manifest\nversion: 1\ndevices:\n  - {device: A, log: a.npy}\n  - log: b.npy\n    batch: \"2\"\n"
+    devices = b"devices:\n  - {device: A, log: a.npy}\n  - log: b.npy\n    batch: \"2\"\n"
+    yield "manifest", b"\0format: fleet-manifest\nversion: 1\n" + devices
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        run = lambda *words: subprocess.run([str(program), "fleet", *map(str, words)], capture_output=True, cwd=folder, check=True)
+        run = lambda *words: subprocess.run([str(program), "fleet", *map(str, words)], capture_output=True,
+                                            cwd=folder, check=True)
         (folder / "a.f64").write_bytes(b"".join(struct.pack("<d", generator.gauss(0, 1)) for _ in range(16 * 20)))
         channels = [{"name": f"a{k}", "unit": "deg/s"} for k in range(20)]
-        (folder / "a.f64.json").write_text(json.dumps({"dtype": "f64", "endian": "little", "rate_hz": 100, "channels": channels}))
-        (folder / "b.csv").write_text("t[s],gx[deg/s]\n" + "".join(f"{k / 100},{generator.gauss(0, 1):.4f}\n" for k in range(400)))
+        (folder / "a.f64.json").write_text(json.dumps({"dtype": "f64", "endian": "little", "rate_hz": 100,
+                                                       "channels": channels}))
+        (folder / "b.csv").write_text("t[s],gx[deg/s]\n"
+                                      + "".join(f"{k / 100},{generator.gauss(0, 1):.4f}\n" for k in range(400)))
         run("plan", "a.f64", "--split-above", "1KiB", "--segment", "8", "-c", "a0", "--no-reports", "-o", "f")
         run("plan", "b.csv", "--no-reports", "-o", "g")
         for fleet in ("f", "g"):
@@ -241,20 +267,26 @@ def seeds(program):
             yield "document", first + piece
             for target in ("scene", "model", "limits", "fusion", "report"):
                 yield target, first + piece
-    yield "limits", (b"\0format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    white_noise: {value: 2, unit: deg/\xe2\x88\x9ah}\n"
-                     b"  - channels: [accel_x]\n    white_noise: 1e-3\n    bias_instability: {value: 25, unit: m/s^2, reading: floor}\n")
+    yield "limits", (b"\0format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    white_noise: "
+                     b"{value: 2, unit: deg/\xe2\x88\x9ah}\n"
+                     b"  - channels: [accel_x]\n    white_noise: 1e-3\n    bias_instability: "
+                     b"{value: 25, unit: m/s^2, reading: floor}\n")
     for text in NUMBERS + [str(e) for e in EXTREMES]:
         for choice in range(8):
             yield "number", bytes([choice]) + text.encode()
     for row in range(40):
-        yield "number", bytes([row]) + "".join(f"{generator.choice(EXTREMES)},{generator.choice(NUMBERS)},{generator.random():.{row % 17}f}\n"
-                                               for _ in range(5)).encode()
+        cells = "".join(
+            f"{generator.choice(EXTREMES)},{generator.choice(NUMBERS)},{generator.random():.{row % 17}f}\n"
+            for _ in range(5))
+        yield "number", bytes([row]) + cells.encode()
     for choice in range(256):
         yield "formats", bytes([choice, generator.randrange(256)]) + generator.randbytes(400)
-        yield "stamps", bytes([choice]) + bytes(generator.choice([0, 1, 2, 3, 128, 129, 130, 131, 132, 200, 230]) for _ in range(80))
+        yield "stamps", bytes([choice]) + bytes(generator.choice([0, 1, 2, 3, 128, 129, 130, 131, 132, 200, 230])
+                                                for _ in range(80))
         yield "stream", bytes([choice, generator.randrange(256), generator.randrange(256)]) + generator.randbytes(600)
     for stamp in EXTREMES:
-        yield "stamps", b"\7\x80" + struct.pack("<Q", stamp % 2**64) + bytes(range(40)) + b"\xff" + struct.pack("<Q", 2**62) + bytes(20)
+        extreme, far = struct.pack("<Q", stamp % 2**64), struct.pack("<Q", 2**62)
+        yield "stamps", b"\7\x80" + extreme + bytes(range(40)) + b"\xff" + far + bytes(20)
     for target, data in ros_files():
         for piece in cut(data, generator):
             yield target, bytes([generator.randrange(256)]) + piece

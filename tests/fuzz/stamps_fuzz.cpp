@@ -1,5 +1,5 @@
-// Any 64-bit stamps, extremes included, as a .csv and as a .npy file of the same numbers: both are refused, or both give the same samples
-// at the same instants, whatever the blocks.
+// Any 64-bit stamps, extremes included, as a .csv and as a .npy file of the same numbers: both are
+// refused, or both give the same samples at the same instants, whatever the blocks.
 
 #include <cmath>
 #include <vector>

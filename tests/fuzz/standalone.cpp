@@ -1,5 +1,6 @@
-// A plain driver for the targets where there is no libFuzzer (GCC): inputs of the given folders, broken at random, for so many seconds.
-// No feedback, so it finds less; but any compiler's code can be tried. Options as libFuzzer has them; others are ignored.
+// A plain driver for the targets where there is no libFuzzer (GCC): inputs of the given folders,
+// broken at random, for so many seconds. No feedback, so it finds less; but any compiler's code can
+// be tried. Options as libFuzzer has them; others are ignored.
 //   TARGET_fuzz [-max_total_time=60] [-max_len=4096] [-seed=1] [-artifact_prefix=PREFIX] FOLDER|FILE…
 
 #include <unistd.h>

@@ -1,4 +1,5 @@
-// Any samples through the streaming statistics in pieces of any size, and whole: the same bits; and the direct computation beside them.
+// Any samples through the streaming statistics in pieces of any size, and whole: the same bits; and
+// the direct computation beside them.
 
 #include <cmath>
 #include <vector>

@@ -1,5 +1,5 @@
-// Any bytes as the task of a unit, under the name of its content unless the first byte is odd: what is read is written, and read back as
-// the same unit.
+// Any bytes as the task of a unit, under the name of its content unless the first byte is odd: what
+// is read is written, and read back as the same unit.
 
 #include "libchar/fleet/unit.hpp"
 #include "tests/fuzz/fleet_support.hpp"

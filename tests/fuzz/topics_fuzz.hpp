@@ -1,5 +1,6 @@
 #pragma once
-// Any bytes as a log of topics: an Error or rows, the same rows in any blocks, of every topic that is listed as readable.
+// Any bytes as a log of topics: an Error or rows, the same rows in any blocks, of every topic that
+// is listed as readable.
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,6 @@
 #pragma once
-// The log that every fixture of fixtures/arrays holds (make.py): 20 rows at 100 Hz, gyr = (k, -k / 2, k / 4), acc = (1000 + k, k², -1).
+// The log that every fixture of fixtures/arrays holds (make.py): 20 rows at 100 Hz, gyr = (k, -k /
+// 2, k / 4), acc = (1000 + k, k², -1).
 
 #include <catch2/catch.hpp>
 #include <fstream>

@@ -56,7 +56,8 @@ TEST_CASE("a caller may stop at any chunk, and the hash is that of the whole fil
     }
 }
 
-// Found by fuzzing: a thread that was reading took the stop back that came just then, and waited for ever for a chunk to be free.
+// Found by fuzzing: a thread that was reading took the stop back that came just then, and waited
+// for ever for a chunk to be free.
 TEST_CASE("a caller may stop at any moment: the threads that read ahead end") {
   const test::TemporaryFolder folder;
   const std::string path = written(folder, many_rows(""));

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Binary and compressed logs cut at every 1000th byte, through the program: cut_files.py PROGRAM [--step 1000]
 
-Every beginning of every binary fixture is inspected. Right is exit 0 with the loss said, or exit 3 with one sentence that names a code, and
-for a whole file exit 0; wrong is anything else, and any report of a sanitizer (`.ci/gates sanitize` runs it with them).
+Every beginning of every binary fixture is inspected. Right is exit 0 with the loss said, or exit 3 with one
+sentence that names a code, and for a whole file exit 0; wrong is anything else, and any report of a sanitizer
+(`.ci/gates sanitize` runs it with them).
 """
 import argparse
 import json
@@ -18,7 +19,8 @@ SUFFIXES = {".mcap", ".bag", ".db3", ".ulg", ".bin", ".npz", ".npy", ".mat", ".h
 # A record after the other and no end mark: a cut between two of them leaves a whole file.
 WITHOUT_END = {".ulg", ".bin", ".imu"}
 REFUSED = {"log_v4.mat"}  # also as a whole
-OPTIONS = {"float.imu": ["--preset", "NAVCHIP_FLT"], "int.imu": ["--preset", "NAVCHIP_INT"], ".npy": ["--rate", "100Hz"], ".npz": ["--rate", "100Hz"],
+OPTIONS = {"float.imu": ["--preset", "NAVCHIP_FLT"], "int.imu": ["--preset", "NAVCHIP_INT"],
+           ".npy": ["--rate", "100Hz"], ".npz": ["--rate", "100Hz"],
            ".mat": ["--rate", "100Hz"], ".h5": ["--rate", "100Hz"]}
 WITHOUT_LIBRARY = re.compile(r"this program (is|was) built without|this build cannot unpack")
 SAID = re.compile(r": error E\d{4}: ")
@@ -45,7 +47,8 @@ def wrong(program, name, whole, path):
     """What is wrong with the answer, or nothing, and whether it was refused."""
     suffix = pathlib.Path(name).suffix
     words = OPTIONS.get(name) or OPTIONS.get(suffix, [])
-    ran = subprocess.run([program, "inspect", path, *words, "--json", "--quiet"], capture_output=True, stdin=subprocess.DEVNULL, timeout=120)
+    ran = subprocess.run([program, "inspect", path, *words, "--json", "--quiet"], capture_output=True,
+                         stdin=subprocess.DEVNULL, timeout=120)
     said = ran.stderr.decode(errors="replace")
     path.unlink()
     if "Sanitizer" in said or "runtime error" in said:

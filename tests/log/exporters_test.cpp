@@ -1,5 +1,6 @@
-// Files laid out byte by byte as the exporters of the field write them: each is read right at the first try, names, units, rate,
-// stamps and values checked, or refused with the sentence that leads to the right command. None is read wrong in silence.
+// Files laid out byte by byte as the exporters of the field write them: each is read right at the
+// first try, names, units, rate, stamps and values checked, or refused with the sentence that leads
+// to the right command. None is read wrong in silence.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
-// Files by h5py (fixtures/arrays/make.py): values, units, rates, what is never followed, and what a crash of the library does.
+// Files by h5py (fixtures/arrays/make.py): values, units, rates, what is never followed, and what a
+// crash of the library does.
 
 #include <catch2/catch.hpp>
 #include <csignal>

@@ -47,7 +47,8 @@ inline std::string refusal(const std::string& format,
   }
 }
 
-/// The first `n` messages of an IMU at 200 Hz, header stamps; without orientation, whose covariance says that it is not measured.
+/// The first `n` messages of an IMU at 200 Hz, header stamps; without orientation, whose covariance
+/// says that it is not measured.
 inline void check_imu(const Rows& rows, std::size_t n) {
   CHECK(channel_names(rows.info) ==
         "angular_velocity.x[rad/s] angular_velocity.y[rad/s] angular_velocity.z[rad/s] "
@@ -66,7 +67,8 @@ inline void check_imu(const Rows& rows, std::size_t n) {
   CHECK(wrong == 0);
 }
 
-/// A file of fixtures/ros cut at every `step`-th byte: what is read is the beginning of what the whole one holds, and a loss is said.
+/// A file of fixtures/ros cut at every `step`-th byte: what is read is the beginning of what the
+/// whole one holds, and a loss is said.
 inline void check_cuts(const std::string& format,
                        const std::string& name,
                        const std::string& topic,

@@ -1,4 +1,5 @@
-// What a sketch of stamps keeps of a series that it thins: the interval, and the stamp that deviates most, wherever it stands.
+// What a sketch of stamps keeps of a series that it thins: the interval, and the stamp that
+// deviates most, wherever it stands.
 
 #include "libchar/log/time/stamp_sketch.hpp"
 

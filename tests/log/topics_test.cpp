@@ -1,4 +1,5 @@
-// Which topic of a log with several is meant, and what is common to their rows, by a reader that holds its messages in memory.
+// Which topic of a log with several is meant, and what is common to their rows, by a reader that
+// holds its messages in memory.
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
-// PX4 ULog: files laid out byte by byte by fixtures/flight/make.py, whose formulas are repeated here; @foxglove/ulog 2.3.2 read the
-// same numbers from them (fixtures/README.md).
+// PX4 ULog: files laid out byte by byte by fixtures/flight/make.py, whose formulas are repeated
+// here; @foxglove/ulog 2.3.2 read the same numbers from them (fixtures/README.md).
 
 #include <fmt/format.h>
 

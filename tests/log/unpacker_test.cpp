@@ -1,4 +1,5 @@
-// Compressed logs, read as they are stored: packed by gzip 1.12, zstd 1.5.4 and xz 5.4.1 of Debian 12 from the 60 rows below.
+// Compressed logs, read as they are stored: packed by gzip 1.12, zstd 1.5.4 and xz 5.4.1 of Debian
+// 12 from the 60 rows below.
 
 #include "libchar/log/csv/unpacker.hpp"
 

@@ -10,7 +10,8 @@
 using namespace libchar;
 
 TEST_CASE("grouped lines: slopes and spread of values that lie exactly so") {
-  // Group 0: 1 + 2 x and residuals +-1 about it; group 1 has two values, so that its line is exact; group 2 has no line.
+  // Group 0: 1 + 2 x and residuals +-1 about it; group 1 has two values, so that its line is exact;
+  // group 2 has no line.
   const std::vector<double> y = {-1 + 1, 1 - 2, 3 + 1, 10, 14, 5, 7}, x = {-1, 0, 1, 0, 2, 0, 9};
   const std::vector<double> v(y.size(), 1e-6);
   const std::vector<std::size_t> group = {0, 0, 0, 1, 1, 2, 2};

@@ -146,7 +146,8 @@ TEST_CASE("few values of unlike sizes have intervals with both ends") {
   for (const double q : square) sd.push_back(0.01 * q);
   const std::vector<double> skewness(6, 0.02), samples(6, 1e6);
   const LognormalEffects found = lognormal_effects({square, sd, skewness, samples});
-  // Of the logarithms: mean -5.4, standard deviation 2.603; Student's t of 5 degrees of freedom, chi-square by its likelihood.
+  // Of the logarithms: mean -5.4, standard deviation 2.603; Student's t of 5 degrees of freedom,
+  // chi-square by its likelihood.
   const double half = 2.5706 * 2.603 / std::sqrt(6.0);
   CHECK(found.mean == Approx(-5.4).margin(0.1));
   CHECK(found.mean_ci95.low == Approx(-5.4 - half).epsilon(0.05));

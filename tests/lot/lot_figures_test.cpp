@@ -12,7 +12,8 @@ using namespace libchar;
 
 namespace {
 
-/// Fits of devices whose coefficient is exp(spread N(0, 1)): c² is found without bias, by `dof` squares, and v is what the fit believes.
+/// Fits of devices whose coefficient is exp(spread N(0, 1)): c² is found without bias, by `dof`
+/// squares, and v is what the fit believes.
 struct Fits {
   std::vector<double> y, v, samples;
 };

@@ -74,7 +74,8 @@ inline std::vector<libchar::DeviceRecord> made_lot(const MadeLot& lot, std::uint
   return out;
 }
 
-/// Recordings of each device at temperatures: its turn-on bias moves with them, and scatters whenever it is switched on.
+/// Recordings of each device at temperatures: its turn-on bias moves with them, and scatters
+/// whenever it is switched on.
 struct MadeTemperatures {
   std::vector<double> at_c = {-20, 25, 60, 25};
   double reference_c = 25;

@@ -3,15 +3,17 @@
 
 usage: tests/mutation/mutate.py [--mutants 400] [--seed 1] [--only PATTERN] [--build build] [--results FILE]
 
-A mutant is one source with one line rewritten (sites.py) from the list in targets.py; a hash of seed, file and line chooses it, so that an
-edit elsewhere does not change the choice. It is compiled by the command of a build in which every source is compiled alone (build-mutation, -O1,
-with the assertions of the standard library as `.ci/gates sanitize` has them), and linked in front of the objects of that build with the
-test objects of an ordinary build (`--build`, whose test programs must be up to date). The floor's cases run, quick ones
-first, until one fails; a case that takes longer than --slowest seconds without a mutation is left out.
+A mutant is one source with one line rewritten (sites.py) from the list in targets.py; a hash of seed, file
+and line chooses it, so that an edit elsewhere does not change the choice. It is compiled by the command of a
+build in which every source is compiled alone (build-mutation, -O1, with the assertions of the standard
+library as `.ci/gates sanitize` has them), and linked in front of the objects of that build with the test
+objects of an ordinary build (`--build`, whose test programs must be up to date). The floor's cases run, quick
+ones first, until one fails; a case that takes longer than --slowest seconds without a mutation is left out.
 
-Results: killed (and by which case), timed out (10 times the time of the sound program; counts as killed), survived, did not compile (does
-not count). Each is a line of JSON in --results; mutants that stand there with the same text are not run again, unless they survived and
---again is given. Survivors named in equivalent.txt cannot be told from the original by any test; the reason stands there."""
+Results: killed (and by which case), timed out (10 times the time of the sound program; counts as killed),
+survived, did not compile (does not count). Each is a line of JSON in --results; mutants that stand there with
+the same text are not run again, unless they survived and --again is given. Survivors named in equivalent.txt
+cannot be told from the original by any test; the reason stands there."""
 import argparse
 import collections
 import fnmatch
@@ -40,14 +42,17 @@ def run(command, **more):
     return subprocess.run(command, capture_output=True, text=True, errors="replace", **more)
 
 
-# --- what is broken -------------------------------------------------------------------------------------------------------------------
+# --- what is broken
+# -------------------------------------------------------------------------------------------------------------------
 
 def target_of(path):
-    return next((row for row in TARGETS if fnmatch.fnmatch(path, row[0]) and path.count("/") == row[0].count("/")), None)
+    return next((row for row in TARGETS if fnmatch.fnmatch(path, row[0]) and path.count("/") == row[0].count("/")),
+                None)
 
 
 def chosen(count, seed, only):
-    """The mutants, {path, floors, line, before, after, operator}: a hash orders those of a file, the files take turns by their share."""
+    """The mutants, {path, floors, line, before, after, operator}: a hash orders those of a file, the files
+    take turns by their share."""
     queues = []
     for path in sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "libchar").rglob("*.cpp")):
         row = target_of(path)
@@ -75,15 +80,18 @@ def equivalents():
     for block in (HERE / "equivalent.txt").read_text().split("\n\n"):
         lines = [line for line in block.split("\n") if line.strip() and not line.startswith("#")]
         if lines:
-            found[(lines[0].strip(), lines[1][2:].strip(), lines[2][2:].strip())] = " ".join(line[2:].strip() for line in lines[3:])
+            found[(lines[0].strip(), lines[1][2:].strip(),
+                   lines[2][2:].strip())] = " ".join(line[2:].strip() for line in lines[3:])
     return found
 
 
-# --- how it is built ------------------------------------------------------------------------------------------------------------------
+# --- how it is built
+# ------------------------------------------------------------------------------------------------------------------
 
 def build_objects(folders, scratch):
     """Every source of the floors of these folders compiled alone; (commands, archive of the objects)."""
-    made = run(["cmake", "-S", str(ROOT), "-B", str(LIBRARY), "-G", "Ninja", "--log-level=WARNING", "-DCMAKE_BUILD_TYPE=Mutation",
+    made = run(["cmake", "-S", str(ROOT), "-B", str(LIBRARY), "-G", "Ninja", "--log-level=WARNING",
+                "-DCMAKE_BUILD_TYPE=Mutation",
                 "-DCMAKE_CXX_FLAGS_MUTATION=-O1 -D_GLIBCXX_ASSERTIONS -w", "-DLIBCHAR_UNITY=OFF", "-DLIBCHAR_TESTS=OFF",
                 "-DLIBCHAR_TOOLS=OFF", "-DLIBCHAR_BENCH=OFF", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"])
     if made.returncode:
@@ -115,8 +123,9 @@ def compile_commands():
 
 
 def link_command(build, floor, archive, folders, scratch):
-    """The command that links a floor's tests, with the archive of objects compiled alone before those of `build`; OBJECT and PROGRAM are
-    to be replaced. Objects and archives are copied: `build` may be built again while this runs."""
+    """The command that links a floor's tests, with the archive of objects compiled alone before those of
+    `build`; OBJECT and PROGRAM are to be replaced. Objects and archives are copied: `build` may be built
+    again while this runs."""
     commands = run(["ninja", "-C", str(build), "-t", "commands", f"tests/test_{floor}"]).stdout.strip().split("\n")
     words = shlex.split(re.sub(r"^: && | && (?:cd .*|:)$", "", commands[-1]))
     words[words.index("-o") + 1] = "PROGRAM"
@@ -146,7 +155,8 @@ def linked(command, build, program, mutant_object=None):
     return run(words, cwd=build)
 
 
-# --- how it is tested -----------------------------------------------------------------------------------------------------------------
+# --- how it is tested
+# -----------------------------------------------------------------------------------------------------------------
 
 def limits():
     resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
@@ -158,7 +168,8 @@ def run_cases(program, names, seconds, scratch, options=("--abort",)):
     """(what happened, in which case, report) of these cases: ok, failed, crashed or timed out."""
     (scratch / "cases.txt").write_text("".join(f'"{name}"\n' for name in names))
     with open(scratch / "out.xml", "wb") as out:
-        process = subprocess.Popen([str(program), "-f", str(scratch / "cases.txt"), *options, "-r", "xml", "-d", "yes"], stdout=out,
+        process = subprocess.Popen([str(program), "-f", str(scratch / "cases.txt"), *options, "-r", "xml", "-d",
+                                    "yes"], stdout=out,
                                    stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL, preexec_fn=limits, cwd=scratch,
                                    env={**os.environ, "TMPDIR": str(scratch)})
         try:
@@ -174,12 +185,14 @@ def run_cases(program, names, seconds, scratch, options=("--abort",)):
 
 
 def cases_of(program, slowest, scratch):
-    """Seconds, names and files of the sound program's cases, quick first; those that take longer than `slowest` are left out."""
+    """Seconds, names and files of the sound program's cases, quick first; those that take longer than
+    `slowest` are left out."""
     listed = run([str(program), "--list-test-names-only"]).stdout
     waiting, found = [name for name in listed.split("\n") if name], []
     while waiting:
         what, last, text = run_cases(program, [quoted(name) for name in waiting], 3000, scratch, [])
-        for name, file, body in re.findall(r'<TestCase name="([^"]*)"[^>]*? filename="([^"]*)"(.*?)</TestCase>', text, flags=re.S):
+        for name, file, body in re.findall(r'<TestCase name="([^"]*)"[^>]*? filename="([^"]*)"(.*?)</TestCase>',
+                                           text, flags=re.S):
             result = re.search(r'<OverallResult success="(\w+)"(?: durationInSeconds="([^"]*)")?', body)
             name = unescaped(name)
             waiting.remove(name)
@@ -226,16 +239,19 @@ class Floor:
         if text.count("<TestCase ") != len(quick):
             sys.exit(f"test_{name}: {len(quick)} cases asked for, {text.count('<TestCase ')} ran")
         self.quick, self.slow = quick, slow
-        print(f"test_{name}: {len(quick)} quick cases, {len(slow)} slower ones ({sum(s for s, *_ in cases):.1f} s together), "
+        print(f"test_{name}: {len(quick)} quick cases, {len(slow)} slower ones ({sum(s for s, *_ in cases):.1f} s "
+              f"together), "
               f"{left_out} above {slowest:g} s left out", flush=True)
         program.unlink()
 
     def groups(self, path):
-        """[(cases, seconds they may take)]: those of the test files that are named like the source, the other quick ones, the slow ones."""
+        """[(cases, seconds they may take)]: those of the test files that are named like the source, the other
+        quick ones, the slow ones."""
         stem = pathlib.Path(path).stem
         near = [case for case in self.quick if stem in case[2]]
         far = [case for case in self.quick if stem not in case[2]]
-        return [([case for _, case, _ in group], 10 * sum(seconds for seconds, *_ in group) + 5) for group in (near, far, self.slow) if group]
+        return [([case for _, case, _ in group], 10 * sum(seconds for seconds, *_ in group) + 5)
+                for group in (near, far, self.slow) if group]
 
 
 def judged(mutant, commands, floors, build, scratch):
@@ -258,11 +274,13 @@ def judged(mutant, commands, floors, build, scratch):
         for cases, seconds in floors[name].groups(mutant["path"]):
             result, case, _ = run_cases(program, cases, seconds, scratch)
             if result != "ok":
-                return ("timed out" if result == "timed out" else "killed"), f"{name}: {case}" + (" (crash)" if result == "crashed" else "")
+                return ("timed out" if result == "timed out"
+                        else "killed"), f"{name}: {case}" + (" (crash)" if result == "crashed" else "")
     return "survived", ""
 
 
-# --- what is said ---------------------------------------------------------------------------------------------------------------------
+# --- what is said
+# ---------------------------------------------------------------------------------------------------------------------
 
 def key(mutant):
     return mutant["path"], mutant["before"].strip(), mutant["after"].strip(), mutant["nth"]
@@ -282,10 +300,12 @@ def summary(results):
         print(f"\nopen: {shown(mutant)}")
     tried = len(results) - count["did not compile"]
     killed = count["killed"] + count["timed out"]
-    print(f"\n{tried} mutants ({count['did not compile']} more did not compile): {count['killed']} killed, {count['timed out']} timed out, "
+    print(f"\n{tried} mutants ({count['did not compile']} more did not compile): {count['killed']} killed, "
+          f"{count['timed out']} timed out, "
           f"{len(survivors)} survived: {len(equal)} equivalent, {len(still_open)} open")
     if tried:
-        print(f"killed: {100 * killed / tried:.1f} % of all, {100 * killed / max(1, tried - len(equal)):.1f} % of those that are not equivalent")
+        print(f"killed: {100 * killed / tried:.1f} % of all, {100 * killed / max(1, tried - len(equal)):.1f} % of "
+              f"those that are not equivalent")
     by_floor = collections.defaultdict(collections.Counter)
     for r in results:
         if r["result"] != "did not compile":
@@ -345,7 +365,8 @@ def main():
         return
     done = remembered(ROOT / arguments.results, arguments.again)
     if not arguments.summary:
-        scratch = pathlib.Path(tempfile.mkdtemp(prefix="mutation-", dir="/dev/shm" if os.path.isdir("/dev/shm") else None))
+        scratch = pathlib.Path(tempfile.mkdtemp(prefix="mutation-",
+                                                dir="/dev/shm" if os.path.isdir("/dev/shm") else None))
         try:
             run_all(wanted, done, arguments, scratch)
         finally:

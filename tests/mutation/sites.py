@@ -1,7 +1,8 @@
 """Places where a C++ source can be broken, and how: mutants(text) → [Mutant].
 
-The sources are as .clang-format leaves them, which is what makes it simple: a binary operator has a space on either side and a template's
-bracket has none, so that lines with comments and strings blanked out can be rewritten by patterns."""
+The sources are as .clang-format leaves them, which is what makes it simple: a binary operator has a space on
+either side and a template's bracket has none, so that lines with comments and strings blanked out can be
+rewritten by patterns."""
 import collections
 import re
 
@@ -11,14 +12,18 @@ Mutant = collections.namedtuple("Mutant", "line before after operator")
 BINARY = {
     " < ": " <= ", " <= ": " < ", " > ": " >= ", " >= ": " > ", " == ": " != ", " != ": " == ",
     " && ": " || ", " || ": " && ",
-    " + ": " - ", " - ": " + ", " * ": " / ", " / ": " * ", " += ": " -= ", " -= ": " += ", " *= ": " /= ", " /= ": " *= ",
+    " + ": " - ", " - ": " + ", " * ": " / ", " / ": " * ", " += ": " -= ", " -= ": " += ", " *= ": " /= ",
+    " /= ": " *= ",
 }
-KIND = {" < ": "relation", " <= ": "relation", " > ": "relation", " >= ": "relation", " == ": "relation", " != ": "relation",
+KIND = {" < ": "relation", " <= ": "relation", " > ": "relation", " >= ": "relation", " == ": "relation",
+        " != ": "relation",
         " && ": "logic", " || ": "logic"}
 NUMBER = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+|\d+)(U|ULL|L)?(?![\w.])")
 IF = re.compile(r"^(\s*(?:\} else )?if \()(.+)(\)(?: \{| [^{};]+;|))$")
 STATEMENT = re.compile(r"^\s+(?:[\w:.\[\]*()]|->)+(?:\s[-+*/|&^%]?=\s.+|\(.*\)|\+\+|--)?;$|^\s+(?:\+\+|--)[\w.\[\]]+;$")
-NO_STATEMENT = re.compile(r"^\s*(?:return|throw|break|continue|case|using|default|static_assert|public|private|namespace|\}|else\b)")
+NO_STATEMENT = re.compile(
+    r"^\s*(?:return|throw|break|continue|case|using|default|static_assert|public|private|namespace|\}|else\b)")
+AFTER = re.compile(r"[;{}]\s*$|\)\s*$|else$|^\s*$")
 
 
 def blanked(text):
@@ -78,7 +83,7 @@ def of_returns(clean):
 
 
 def of_statements(clean, previous):
-    if STATEMENT.match(clean) and not NO_STATEMENT.match(clean) and balanced(clean) and re.search(r"[;{}]\s*$|\)\s*$|else$|^\s*$", previous):
+    if STATEMENT.match(clean) and not NO_STATEMENT.match(clean) and balanced(clean) and AFTER.search(previous):
         start = len(clean) - len(clean.lstrip())
         yield start, len(clean), ";", "statement"
 
@@ -91,7 +96,8 @@ def mutants(text):
         if not seen.strip():
             continue
         if "static_assert" not in seen and "template <" not in seen and "operator" not in seen:
-            for start, end, new, kind in (*of_operators(seen), *of_constants(seen), *of_conditions(seen), *of_returns(seen),
+            for start, end, new, kind in (*of_operators(seen), *of_constants(seen), *of_conditions(seen),
+                                          *of_returns(seen),
                                           *of_statements(seen, previous)):
                 if "\1" not in seen[start:end] or kind in ("condition", "return", "statement"):
                     found.append(Mutant(number, line, line[:start] + new + line[end:], kind))

@@ -1,4 +1,5 @@
-"""What is broken and who should notice: rows of (pattern of sources, floors whose tests run, in order, share of the mutants)."""
+"""What is broken and who should notice: rows of (pattern of sources, floors whose tests run, in order, share
+of the mutants)."""
 TARGETS = [
     # Readers
     ("libchar/log/csv/number.cpp", ["log"], 3),

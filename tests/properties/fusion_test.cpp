@@ -5,6 +5,7 @@
 
 #include "libchar/fusion/algorithms/least_squares.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "libchar/simulate/random.hpp"
 #include "tests/fusion/vectors.hpp"

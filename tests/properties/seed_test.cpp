@@ -1,4 +1,5 @@
-// Properties are tried on the same cases each time, unless the environment asks for others: a landing does not hang on luck.
+// Properties are tried on the same cases each time, unless the environment asks for others: a
+// landing does not hang on luck.
 
 #include <cstdlib>
 

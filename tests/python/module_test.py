@@ -1,4 +1,5 @@
-"""The Python module says what the program says, without copies, and refuses in sentences. usage: module_test.py PROGRAM"""
+"""The Python module says what the program says, without copies, and refuses in sentences. usage:
+module_test.py PROGRAM"""
 import dataclasses
 import gc
 import inspect
@@ -49,7 +50,8 @@ class SaysWhatTheProgramSays(unittest.TestCase):
 
     def test_allan(self):
         for kind, taus in (("oadev", "octave"), ("mdev", "decade"), ("totdev", [0.1, 1, 10])):
-            told = program("allan", IMU, "--type", kind, "--taus", taus if isinstance(taus, str) else "0.1s,1s,10s")["channels"]
+            told = program("allan", IMU, "--type", kind, "--taus",
+                           taus if isinstance(taus, str) else "0.1s,1s,10s")["channels"]
             for curve, channel in zip(libchar.allan(IMU, type=kind, taus=taus), told):
                 self.assertEqual(curve.tau_s.tolist(), channel["tau_s"])
                 self.assertEqual(curve.deviation.tolist(), channel["deviation"])
@@ -105,8 +107,10 @@ class SaysWhatTheProgramSays(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "gyro_z.sensor.yaml"
             path.write_text(model)
-            subprocess.run([PROGRAM, "simulate", str(path), "--devices", "2", "--duration", "60", "--truth", "sine,amplitude=2,frequency_hz=0.1",
-                            "--fault", "gyro_z2:bias=0.3@20..40", "--seed", "7", "-o", f"{folder}/log.csv", "--quiet"], check=True, capture_output=True)
+            subprocess.run([PROGRAM, "simulate", str(path), "--devices", "2", "--duration", "60", "--truth",
+                            "sine,amplitude=2,frequency_hz=0.1",
+                            "--fault", "gyro_z2:bias=0.3@20..40", "--seed", "7", "-o", f"{folder}/log.csv",
+                            "--quiet"], check=True, capture_output=True)
             log = libchar.read(f"{folder}/log.csv")
             for source in (model, path):
                 made = libchar.simulate(source, duration_s=60, devices=2, truth="sine,amplitude=2,frequency_hz=0.1",
@@ -119,7 +123,8 @@ class SaysWhatTheProgramSays(unittest.TestCase):
         made = libchar.simulate(model, duration_s=120, devices=3, truth="sine,amplitude=2,frequency_hz=0.1")
         with tempfile.TemporaryDirectory() as folder:
             libchar.write(f"{folder}/log.f64", made)
-            told = program("replay", "log.f64", "--sensors", "gyro*", "--reference", "truth", "--learning", "0..60", "--algorithms",
+            told = program("replay", "log.f64", "--sensors", "gyro*", "--reference", "truth", "--learning", "0..60",
+                           "--algorithms",
                            "mean,least-squares", "-o", "out", folder=folder)
             how = dict(sensors=["gyro*"], reference="truth", learning=(0, 60), algorithms=["mean", "least-squares"])
             for source in (f"{folder}/log.f64", made):
@@ -147,12 +152,14 @@ class CopiesNothing(unittest.TestCase):
             libchar.fit(table, 100)
 
     def test_in_copied_once_and_said(self):
-        for source in (noise().astype(np.float32), noise()[::2], np.stack([noise(), noise()], axis=1)[:, 0], np.arange(20000) % 7, noise()[::-1]):
+        for source in (noise().astype(np.float32), noise()[::2], np.stack([noise(), noise()], axis=1)[:, 0],
+                       np.arange(20000) % 7, noise()[::-1]):
             with self.assertWarns(libchar.CopyWarning):
                 copied = libchar.fit(source, 100)
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
-                self.assertEqual(copied[0].to_dict(), libchar.fit(np.ascontiguousarray(source, dtype=float), 100)[0].to_dict())
+                self.assertEqual(copied[0].to_dict(),
+                                 libchar.fit(np.ascontiguousarray(source, dtype=float), 100)[0].to_dict())
 
     def test_memory_of_a_call(self):
         record = noise(4_000_000)
@@ -205,7 +212,8 @@ class Refuses(unittest.TestCase):
         return caught.exception
 
     def test_files(self):
-        self.assertIn("/nowhere", self.refused(libchar.InputError, lambda: libchar.read("/nowhere/a.csv"), "E0101").where)
+        self.assertIn("/nowhere", self.refused(libchar.InputError, lambda: libchar.read("/nowhere/a.csv"),
+                                               "E0101").where)
         with tempfile.TemporaryDirectory() as folder:
             bad = pathlib.Path(folder) / "bad.csv"
             bad.write_text("t,x\n0,1\n1,y\n2,3\n")
@@ -216,11 +224,13 @@ class Refuses(unittest.TestCase):
 
     def test_arguments(self):
         x = noise(1000)
-        for call in (lambda: libchar.fit(x), lambda: libchar.fit(np.zeros((2, 2, 2)), 1), lambda: libchar.fit(np.array(["a"]), 1),
+        for call in (lambda: libchar.fit(x), lambda: libchar.fit(np.zeros((2, 2, 2)), 1),
+                     lambda: libchar.fit(np.array(["a"]), 1),
                      lambda: libchar.fit(x, 1, names=["a", "b"]), lambda: libchar.fit({"a": x}, 1, channels=["b"]),
                      lambda: libchar.fit(x, 1, units=["a", "b"])):
             self.refused(libchar.UsageError, call, "E0208")
-        for call in (lambda: libchar.allan(x, 1, type="odev"), lambda: libchar.psd(x, 1, window="hamm"), lambda: libchar.fit(x, 1, terms=["N"]),
+        for call in (lambda: libchar.allan(x, 1, type="odev"), lambda: libchar.psd(x, 1, window="hamm"),
+                     lambda: libchar.fit(x, 1, terms=["N"]),
                      lambda: libchar.allan(x, 1, taus="eighth")):
             self.refused(libchar.UsageError, call, "E0202")
         self.assertRaises(ValueError, lambda: libchar.allan(x, 1, type="odev"))
@@ -232,8 +242,11 @@ class Refuses(unittest.TestCase):
         self.assertEqual((str(again), again.code), (str(error), error.code))
 
     def test_interrupt(self):
-        script = f"import libchar, sys; print('begins', flush=True)\nfor _ in range(1000): libchar.replay({str(ROOT / 'fixtures/scenes/rv-5.1-faults.yaml')!r})"
-        child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        scene = str(ROOT / "fixtures/scenes/rv-5.1-faults.yaml")
+        script = ("import libchar, sys; print('begins', flush=True)\n"
+                  f"for _ in range(1000): libchar.replay({scene!r})")
+        child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 text=True)
         child.stdout.readline()
         time.sleep(1.5)
         child.send_signal(signal.SIGINT)
@@ -244,7 +257,8 @@ class Refuses(unittest.TestCase):
 class IsDescribed(unittest.TestCase):
     def test_results_are_plain(self):
         log = libchar.read(IMU)
-        results = [log, *libchar.allan(log), *libchar.psd(log, segment=512), *libchar.fit(log), libchar.characterize(log)]
+        results = [log, *libchar.allan(log), *libchar.psd(log, segment=512), *libchar.fit(log),
+                   libchar.characterize(log)]
         for result in results:
             self.assertTrue(dataclasses.is_dataclass(result))
             json.dumps(result.to_dict(), allow_nan=False)
@@ -254,7 +268,8 @@ class IsDescribed(unittest.TestCase):
             thing = getattr(libchar, name)
             if name != "build":
                 self.assertTrue(inspect.getdoc(thing), name)
-        for function in (libchar.read, libchar.allan, libchar.psd, libchar.fit, libchar.characterize, libchar.simulate, libchar.replay):
+        for function in (libchar.read, libchar.allan, libchar.psd, libchar.fit, libchar.characterize,
+                         libchar.simulate, libchar.replay):
             self.assertIn(" s", inspect.getdoc(function))
             for argument in inspect.signature(function).parameters.values():
                 self.assertIsNot(argument.annotation, argument.empty, f"{function.__name__}({argument.name})")
@@ -272,7 +287,8 @@ class IsDescribed(unittest.TestCase):
         if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode != 0:
             self.skipTest("mypy is not installed")
         with tempfile.TemporaryDirectory() as cache:
-            ran = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache, str(pathlib.Path(libchar.__file__).parent)],
+            ran = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", cache,
+                                  str(pathlib.Path(libchar.__file__).parent)],
                                  capture_output=True, text=True)
         self.assertEqual(ran.returncode, 0, ran.stdout)
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fusion/array.hpp"
 #include "libchar/replay/detail/blind_share.hpp"
 #include "libchar/replay/replay.hpp"
 #include "tests/replay/replay_numbers.hpp"

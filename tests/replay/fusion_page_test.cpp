@@ -1,4 +1,5 @@
-// The table of keys in docs/fuse.md is that of the reader. With LIBCHAR_WRITE_DOCS set in the environment it is brought up to date.
+// The table of keys in docs/fuse.md is that of the reader. With LIBCHAR_WRITE_DOCS set in the
+// environment it is brought up to date.
 #include <catch2/catch.hpp>
 
 #include "libchar/replay/fusion_file.hpp"

@@ -45,10 +45,9 @@ inline std::string numbers(const ReplayResult& r) {
       for (const AllanPoint& p : i.allan.points) add(p.deviation);
       track(i.window_rms);
     }
-    if (a.weights)
-      for (Eigen::Index k = 0; k < a.weights->size(); ++k) add(a.weights->data()[k]);
-    if (a.variances)
-      for (Eigen::Index k = 0; k < a.variances->size(); ++k) add(a.variances->data()[k]);
+    for (const std::vector<double>& of_input : a.weights)
+      for (const double weight : of_input) add(weight);
+    for (const double variance : a.variances) add(variance);
     for (const FoundFault& f : a.faults) add(f.from_s);
     track(a.weight_track);
     track(a.variance_track);

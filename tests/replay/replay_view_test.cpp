@@ -109,10 +109,10 @@ TEST_CASE("replay view: deviations of many sensors fit a page, and keep their ex
 TEST_CASE("replay view: what stands at the end has a row a matrix column, and no negative root") {
   ReplayResult r = test::synthetic_replay(3);
   for (AlgorithmResult& a : r.algorithms) {
-    a.weights.reset();
-    a.variances.reset();
+    a.weights.clear();
+    a.variances.clear();
   }
-  r.algorithms[0].variances = Eigen::Vector3d(4, -1, 0);
+  r.algorithms[0].variances = {4, -1, 0};
   r.algorithms[0].variance_error = 0;
   const ReplayView view = replay_view(r);
   REQUIRE(view.final_rows.size() == 1);

@@ -1,8 +1,8 @@
 """Opens reports in headless Chromium, as a reader would: no console message, no request, plots drawn, nothing injected.
 
 usage: browser_test.py MAKE_REPORT MAKE_REPLAY_REPORT MAKE_FLEET [REPORT.html…]
-MAKE_REPORT writes reports of synthetic characterizations, MAKE_REPLAY_REPORT those of synthetic replays, MAKE_FLEET those of synthetic
-fleets; reports given beside them are opened as well.
+MAKE_REPORT writes reports of synthetic characterizations, MAKE_REPLAY_REPORT those of synthetic replays,
+MAKE_FLEET those of synthetic fleets; reports given beside them are opened as well.
 The browser is driven over plain HTTP (the WebDriver protocol), with Python's standard library only.
 """
 import base64
@@ -26,14 +26,20 @@ class Browser:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self.port = probe.getsockname()[1]
-        self.driver = subprocess.Popen([shutil.which("chromedriver"), f"--port={self.port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.driver = subprocess.Popen([shutil.which("chromedriver"), f"--port={self.port}"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.session = ""
         self.wait_for_driver()
-        arguments = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-                     "--disable-component-update", "--disable-sync", "--window-size=1280,900", f"--user-data-dir={folder}"]
-        options = {"args": arguments, "binary": shutil.which("chromium"), "perfLoggingPrefs": {"enableNetwork": True, "enablePage": False}}
-        capabilities = {"browserName": "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
-        self.session = "/session/" + self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
+        arguments = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+                     "--disable-background-networking",
+                     "--disable-component-update", "--disable-sync", "--window-size=1280,900",
+                     f"--user-data-dir={folder}"]
+        options = {"args": arguments, "binary": shutil.which("chromium"),
+                   "perfLoggingPrefs": {"enableNetwork": True, "enablePage": False}}
+        capabilities = {"browserName": "chrome", "goog:chromeOptions": options,
+                        "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
+        self.session = "/session/" + self.call("POST", "/session",
+                                               {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
 
     def wait_for_driver(self):
         for _ in range(200):
@@ -46,7 +52,8 @@ class Browser:
 
     def call(self, method, path, body=None):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
-        connection.request(method, self.session + path, None if body is None else json.dumps(body), {"Content-Type": "application/json"})
+        connection.request(method, self.session + path, None if body is None else json.dumps(body),
+                           {"Content-Type": "application/json"})
         value = json.loads(connection.getresponse().read())["value"]
         if isinstance(value, dict) and "error" in value:
             raise RuntimeError(value["message"])
@@ -73,7 +80,8 @@ class Browser:
         return [entry["message"] for entry in self.call("POST", "/se/log", {"type": "browser"})]
 
     def requests(self):
-        entries = [json.loads(entry["message"])["message"] for entry in self.call("POST", "/se/log", {"type": "performance"})]
+        entries = [json.loads(entry["message"])["message"]
+                   for entry in self.call("POST", "/se/log", {"type": "performance"})]
         return [e["params"]["request"]["url"] for e in entries if e["method"] == "Network.requestWillBeSent"]
 
     def close(self):
@@ -94,7 +102,8 @@ return Array.from(document.querySelectorAll('figure.plot canvas')).map((canvas) 
   for (let i = 0; i < pixels.length; i += 4) if (INK && pixels[i + 3] > 200) ++blue;
   return blue;
 });"""
-INJECTED = "return document.querySelectorAll('img, svg, iframe, object, embed, link, base, form, [onerror], [onload], [onmouseover], [onfocus]').length"
+INJECTED = ("return document.querySelectorAll('img, svg, iframe, object, embed, link, base, form, "
+            "[onerror], [onload], [onmouseover], [onfocus]').length")
 DRAWN = "return Object.keys(Chart.instances).length"
 PLOTS = "return document.querySelectorAll('figure.plot').length"
 DRAW_ALL = "window.dispatchEvent(new Event('beforeprint')); return Object.keys(Chart.instances).length"
@@ -121,11 +130,13 @@ def check_page(browser, page, plots=None, replay=False):
         expect(browser.until(DRAWN), f"{page}: no plot drawn in view")
     if count > 30:
         expect(first < count / 3, f"{page}: {first} of {count} plots were drawn at once")
-    shown = browser.run("return Array.from(document.querySelectorAll('figure.plot')).filter((f) => !f.closest('details:not([open])')).length")
+    shown = browser.run("return Array.from(document.querySelectorAll('figure.plot')).filter((f) => "
+                        "!f.closest('details:not([open])')).length")
     drawn = browser.run(DRAW_ALL)
     expect(replay or drawn >= shown, f"{page}: printing draws {drawn} of the {shown} plots that are not folded")
     browser.run(UNFOLD)
-    expect(browser.until(f"return Object.keys(Chart.instances).length == {count}"), f"{page}: unfolding does not draw every plot")
+    expect(browser.until(f"return Object.keys(Chart.instances).length == {count}"),
+           f"{page}: unfolding does not draw every plot")
     browser.run("window.dispatchEvent(new Event('afterprint'))")
     ink = browser.run(INKED.replace("INK", COLOURED if replay else BLUE))
     expect(all(blue > 50 for blue in ink), f"{page}: empty plots, ink {ink}")
@@ -160,7 +171,8 @@ def check_axes(browser, page):
 
 
 def check_scales(browser, page):
-    """Nothing that is drawn leaves the sheet without a mark: the fitted line on its axes, every residual in its plot."""
+    """Nothing that is drawn leaves the sheet without a mark: the fitted line on its axes, every residual in
+    its plot."""
     outside = browser.run("""return Object.values(Chart.instances).filter((c) => c.options.scales.y.type === 'logarithmic').filter((c) => {
       const of = (name) => (c.data.datasets.find((d) => d.label === name) || { data: [] }).data.map((p) => p.y);
       const measured = of('measured'), top = c.options.scales.y.max, bottom = c.options.scales.y.min;
@@ -182,35 +194,46 @@ def check_scales(browser, page):
 def check_controls(browser, page):
     """The boxes choose the lines, the sliders and the pointer the stretch, a click on a head the order of the table."""
     settled = "return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
-    lines = """return Array.from(document.querySelectorAll('figure[data-kind=window]')).map((f) => Chart.getChart(f.querySelector('canvas')).data.datasets.filter((d) => d.label && d.label !== 'optimum of this scene').length)"""
-    if browser.run("return document.querySelectorAll('.shown input').length && document.querySelectorAll('figure[data-kind=window]').length"):
+    lines = """
+        const methods = (d) => d.label && d.label !== 'optimum of this scene';
+        return Array.from(document.querySelectorAll('figure[data-kind=window]'))
+            .map((f) => Chart.getChart(f.querySelector('canvas')).data.datasets.filter(methods).length)"""
+    if browser.run("return document.querySelectorAll('.shown input').length && "
+                   "document.querySelectorAll('figure[data-kind=window]').length"):
         count = browser.run("return document.querySelectorAll('.shown input').length")
         few = browser.run(lines)
         expect(all(0 < n <= 6 for n in few), f"{page}: {few} lines at first")
-        browser.run("Array.from(document.querySelectorAll('.shown button')).find((b) => b.textContent === 'all').click()")
+        browser.run("Array.from(document.querySelectorAll('.shown button')).find((b) => b.textContent === "
+                    "'all').click()")
         browser.run(settled)
         many = browser.run(lines)
         expect(all(n == count for n in many), f"{page}: {many} lines instead of {count} after 'all'")
-    ranges = """return Object.values(Chart.instances).filter((c) => c.canvas.closest('.over-time')).map((c) => [c.scales.x.min, c.scales.x.max])"""
+    ranges = """return Object.values(Chart.instances).filter((c) => c.canvas.closest('.over-time'))
+        .map((c) => [c.scales.x.min, c.scales.x.max])"""
     whole = browser.run(ranges)
     if whole:
-        browser.run("const s = document.querySelectorAll('.controls input[type=range]'); s[0].value = 250; s[0].dispatchEvent(new Event('input'))")
+        browser.run("const s = document.querySelectorAll('.controls input[type=range]'); s[0].value = 250; "
+                    "s[0].dispatchEvent(new Event('input'))")
         browser.run(settled)
         part = browser.run(ranges)
-        expect(all(abs(p[0] - (w[0] + 0.25 * (w[1] - w[0]))) < 1e-6 * w[1] for p, w in zip(part, whole)), f"{page}: the slider left {part}")
+        expect(all(abs(p[0] - (w[0] + 0.25 * (w[1] - w[0]))) < 1e-6 * w[1] for p, w in zip(part, whole)),
+               f"{page}: the slider left {part}")
         browser.run("""const canvas = document.querySelector('.over-time canvas'), area = Chart.getChart(canvas).chartArea, box = canvas.getBoundingClientRect();
           canvas.setPointerCapture = () => {};
           const at = (type, share) => canvas.dispatchEvent(new PointerEvent(type, { button: 0, clientX: box.left + area.left + share * (area.right - area.left), clientY: box.top + area.top + 20, bubbles: true }));
           at('pointerdown', 0.4); at('pointermove', 0.5); at('pointerup', 0.6);""")
         browser.run(settled)
         closer = browser.run(ranges)
-        expect(all(p[0] > q[0] and p[1] < q[1] and p[1] > p[0] for p, q in zip(closer, part)), f"{page}: dragging left {closer}")
-        browser.run("Array.from(document.querySelectorAll('.controls button')).find((b) => b.textContent === 'whole run').click()")
+        expect(all(p[0] > q[0] and p[1] < q[1] and p[1] > p[0] for p, q in zip(closer, part)),
+               f"{page}: dragging left {closer}")
+        browser.run("Array.from(document.querySelectorAll('.controls button')).find((b) => b.textContent === 'whole "
+                    "run').click()")
         browser.run(settled)
         expect(browser.run(ranges) == whole, f"{page}: 'whole run' did not bring it back")
         options = browser.run("return document.querySelectorAll('.controls option').length")
         for i in range(min(options, 4)):
-            browser.run(f"const s = document.querySelector('.controls select'); s.value = {i}; s.dispatchEvent(new Event('change'))")
+            browser.run(f"const s = document.querySelector('.controls select'); s.value = {i}; s.dispatchEvent(new "
+                        f"Event('change'))")
             browser.run(settled)
     # Every column once each way: figures rise, then fall, and what has none stays last.
     wrong = browser.run("""const table = document.querySelector('table.ranking'), head = table.tHead.rows[0].cells, wrong = [];
@@ -242,7 +265,8 @@ def check_download(browser, page):
 def check_widths(browser, page, widths=(420,)):
     """No window scrolls sideways, folded or not."""
     for width in widths:
-        browser.protocol("Emulation.setDeviceMetricsOverride", {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False})
+        browser.protocol("Emulation.setDeviceMetricsOverride",
+                         {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False})
         browser.open(page.resolve().as_uri())
         for state in ("folded", "unfolded"):
             wide = browser.run("return document.documentElement.scrollWidth")
@@ -255,31 +279,39 @@ def check_widths(browser, page, widths=(420,)):
 
 def check_folded(browser, page, most):
     """However many channels there are, the page that opens can be overlooked."""
-    browser.protocol("Emulation.setDeviceMetricsOverride", {"width": 1400, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+    browser.protocol("Emulation.setDeviceMetricsOverride",
+                     {"width": 1400, "height": 900, "deviceScaleFactor": 1, "mobile": False})
     browser.open(page.resolve().as_uri())
     height = browser.run("return document.documentElement.scrollHeight")
     expect(height <= most, f"{page}: {height} pixels tall, more than {most}")
-    target = browser.run("const link = document.querySelector('ul.sensors a'); link.click(); return document.getElementById(link.getAttribute('href').slice(1)).open")
+    target = browser.run("const link = document.querySelector('ul.sensors a'); link.click(); return "
+                         "document.getElementById(link.getAttribute('href').slice(1)).open")
     expect(target, f"{page}: a link to a channel does not unfold it")
     browser.protocol("Emulation.clearDeviceMetricsOverride")
 
 
 def check_dark(browser, page):
     """On a dark screen plots and page are dark and readable; paper stays white."""
-    media = lambda scheme: browser.protocol("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
-    corner = """const canvas = document.querySelector('figure.plot canvas'), p = canvas.getContext('2d').getImageData(1, 1, 1, 1).data; return p[0] + p[1] + p[2];"""
+    media = lambda scheme: browser.protocol("Emulation.setEmulatedMedia",
+                                            {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+    corner = """const canvas = document.querySelector('figure.plot canvas');
+        const p = canvas.getContext('2d').getImageData(1, 1, 1, 1).data;
+        return p[0] + p[1] + p[2];"""
     media("dark")
     browser.open(page.resolve().as_uri())
     browser.until(DRAWN)
     expect(browser.run(corner) < 150, f"{page}: plots stay white on a dark screen")
-    lightness = browser.run("return [getComputedStyle(document.body).backgroundColor, getComputedStyle(document.body).color].map((c) => c.match(/\\d+/g).slice(0, 3).reduce((a, b) => a + Number(b), 0))")
+    lightness = browser.run("return [getComputedStyle(document.body).backgroundColor, "
+                            "getComputedStyle(document.body).color].map((c) => c.match(/\\d+/g).slice(0, "
+                            "3).reduce((a, b) => a + Number(b), 0))")
     expect(lightness[0] < 150 < 500 < lightness[1], f"{page}: dark colours are {lightness}")
     browser.run("window.dispatchEvent(new Event('beforeprint'))")
     expect(browser.run(corner) == 765, f"{page}: paper is dark")
     browser.run("window.dispatchEvent(new Event('afterprint'))")
     expect(browser.run(corner) < 150, f"{page}: the screen stays white after printing")
     media("light")
-    expect(browser.until("return getComputedStyle(document.body).backgroundColor === 'rgb(255, 255, 255)'"), f"{page}: the light colours do not come back")
+    expect(browser.until("return getComputedStyle(document.body).backgroundColor === 'rgb(255, 255, 255)'"),
+           f"{page}: the light colours do not come back")
     browser.protocol("Emulation.setEmulatedMedia", {"features": []})
     browser.console()  # has advice about our reading of pixels
 
@@ -293,8 +325,10 @@ def check_saving(browser, page):
       HTMLAnchorElement.prototype.click = function () {};
       document.querySelectorAll('.save button').forEach((b) => b.click());""")
     wanted = 2 * browser.run(PLOTS)
-    expect(browser.until(f"return window.saved.length === {wanted}"), f"{page}: {browser.run('return window.saved.length')} of {wanted} plots saved")
-    texts = browser.run("return window.saved.map((bytes) => new TextDecoder('latin1').decode(bytes.slice(0, 8)) + '').filter((t) => !t.startsWith('<svg') && !t.includes('PNG'))")
+    expect(browser.until(f"return window.saved.length === {wanted}"),
+           f"{page}: {browser.run('return window.saved.length')} of {wanted} plots saved")
+    texts = browser.run("return window.saved.map((bytes) => new TextDecoder('latin1').decode(bytes.slice(0, 8)) + "
+                        "'').filter((t) => !t.startsWith('<svg') && !t.includes('PNG'))")
     expect(not texts, f"{page}: saved {texts[:3]}")
     wrong = browser.run("""return window.saved.filter((bytes) => bytes[0] === 60).map((bytes) => new DOMParser().parseFromString(new TextDecoder().decode(bytes), 'image/svg+xml'))
       .filter((svg) => svg.querySelector('parsererror') || svg.querySelectorAll('path').length < 8 || svg.querySelectorAll('text').length < 4 || svg.querySelector('script, image, a')).length""")
@@ -323,7 +357,8 @@ def check_colours(browser, page):
 
 
 def check_copying(browser, page):
-    """The buttons copy every weight to its last digit, as CSV and as YAML; without a clipboard the text is there to be taken by hand."""
+    """The buttons copy every weight to its last digit, as CSV and as YAML; without a clipboard the text is
+    there to be taken by hand."""
     browser.open(page.resolve().as_uri())
     browser.run("""window.copied = []; Object.defineProperty(navigator, 'clipboard', { value: { writeText: (t) => { window.copied.push(t); return Promise.resolve(); } } });
       document.querySelectorAll('.copy-place button').forEach((b) => b.click());""")
@@ -331,21 +366,27 @@ def check_copying(browser, page):
     csv, yaml = browser.run("return window.copied")[:2]
     report = json.loads(page.with_name("report.json").read_text())
     rows = [line.split(",") for line in csv.splitlines()]
-    expect(rows[0] == ["algorithm", "what"] + [s["name"] for s in report["sensors"]], f"{page}: the copied table begins with {rows[0]}")
+    expect(rows[0] == ["algorithm", "what"] + [s["name"] for s in report["sensors"]],
+           f"{page}: the copied table begins with {rows[0]}")
     for a in report["algorithms"]:
         if a["status"] != "ran" or not a["weights"]:
             continue
         mine = [row[2:] for row in rows if row[:2] == [a["label"], "weights"]]
-        expect(len(mine) == 1 and [float(v) for v in mine[0]] == a["weights"], f"{page}: the weights of {a['label']} are copied as {mine}")
-        expect(f"{a['label']}:\n  weights:\n    {report['sensors'][0]['name']}: " in yaml, f"{page}: {a['label']} is not in the YAML")
-    browser.run("Object.defineProperty(window, 'isSecureContext', { value: false }); document.execCommand = () => false; document.querySelector('.copy-place button').click()")
-    expect(browser.run("return (document.querySelector('.copy-place textarea') || {}).value") == csv, f"{page}: no text to copy by hand")
+        expect(len(mine) == 1 and [float(v) for v in mine[0]] == a["weights"],
+               f"{page}: the weights of {a['label']} are copied as {mine}")
+        expect(f"{a['label']}:\n  weights:\n    {report['sensors'][0]['name']}: " in yaml,
+               f"{page}: {a['label']} is not in the YAML")
+    browser.run("Object.defineProperty(window, 'isSecureContext', { value: false }); document.execCommand = () => "
+                "false; document.querySelector('.copy-place button').click()")
+    expect(browser.run("return (document.querySelector('.copy-place textarea') || {}).value") == csv,
+           f"{page}: no text to copy by hand")
     browser.console()
 
 
 def check_paper(browser, page, most):
     browser.open(page.resolve().as_uri())
-    pdf = base64.b64decode(browser.protocol("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": True})["data"])
+    pdf = base64.b64decode(browser.protocol("Page.printToPDF",
+                                            {"preferCSSPageSize": True, "printBackground": True})["data"])
     pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
     expect(0 < pages <= most, f"{page}: {pages} pages of paper, more than {most}")
 
@@ -359,29 +400,38 @@ def check_without_script(browser, page):
 
 
 def check_fleet(browser, page, devices):
-    """The list of devices is found by words, shown by the hundred and linked; the page opens at once whatever their number."""
+    """The list of devices is found by words, shown by the hundred and linked; the page opens at once whatever
+    their number."""
     address = page.resolve().as_uri()
     browser.requests()
     began = time.time()
     browser.open(address)
     seconds = time.time() - began
-    rows = "return Array.from(document.querySelectorAll('#devices tbody tr')).map((r) => Array.from(r.cells).map((c) => c.textContent))"
+    rows = """return Array.from(document.querySelectorAll('#devices tbody tr'))
+        .map((r) => Array.from(r.cells).map((c) => c.textContent))"""
     shown = browser.run(rows)
     expect(len(shown) == min(100, devices), f"{page}: {len(shown)} rows of devices at first")
     expect(browser.run("return document.querySelectorAll('*').length") < 20000, f"{page}: too many elements")
     browser.run("document.getElementById('device-next').click()")
     expect(devices <= 100 or browser.run(rows)[0] != shown[0], f"{page}: the next page is the same")
-    browser.run("const s = document.getElementById('device-search'); s.value = '2024-03 -9'; s.dispatchEvent(new Event('input'))")
+    browser.run("const s = document.getElementById('device-search'); s.value = '2024-03 -9'; s.dispatchEvent(new "
+                "Event('input'))")
     found = browser.run(rows)
-    expect(found and all("2024-03" in r[2] and "-9" in r[0] + r[2] for r in found), f"{page}: searching finds {found[:3]}")
-    browser.run("""document.getElementById('device-search').value = ''; const c = document.getElementById('device-state'); c.value = '1'; c.dispatchEvent(new Event('change'))""")
+    expect(found and all("2024-03" in r[2] and "-9" in r[0] + r[2] for r in found),
+           f"{page}: searching finds {found[:3]}")
+    browser.run("""document.getElementById('device-search').value = '';
+        const c = document.getElementById('device-state');
+        c.value = '1';
+        c.dispatchEvent(new Event('change'))""")
     odd = browser.run(rows)
     expect(odd and all("stands out" in r[3] for r in odd), f"{page}: those that stand out are {odd[:3]}")
     links = browser.run("return Array.from(document.querySelectorAll('main a[href]')).map((a) => a.href)")
     base = address.rsplit("/", 1)[0] + "/"
-    expect(links and all(link.startswith(base) and link.endswith("/report.html") for link in links), f"{page}: links to {[l for l in links if not l.startswith(base)][:3]}")
+    expect(links and all(link.startswith(base) and link.endswith("/report.html") for link in links),
+           f"{page}: links to {[l for l in links if not l.startswith(base)][:3]}")
     expect(browser.run("return document.querySelectorAll('script').length") == 3, f"{page}: a script was added")
-    expect(browser.run("return document.querySelectorAll('img, iframe, object, embed, link, base, form, [onerror], [onload]').length") == 0, f"{page}: an element or handler came from the input")
+    expect(browser.run("return document.querySelectorAll('img, iframe, object, embed, link, base, form, [onerror], "
+                       "[onload]').length") == 0, f"{page}: an element or handler came from the input")
     expect(browser.run("return window.broken === undefined"), f"{page}: injected code ran")
     console, requests = browser.console(), [r for r in browser.requests() if r != address and not r.startswith(("chrome://", "data:"))]
     expect(not console, f"{page}: console says {console[:3]}")
@@ -408,7 +458,8 @@ def main():
             check_dark(browser, folder / "imu/report.html")
             check_paper(browser, folder / "imu/report.html", 2)
             check_without_script(browser, folder / "imu/report.html")
-            for kind, plots in {"plain": 11, "large": 11, "inputs": 13, "blind": 8, "nothing": 1, "hostile": 10}.items():
+            for kind, plots in {"plain": 11, "large": 11, "inputs": 13, "blind": 8, "nothing": 1,
+                                "hostile": 10}.items():
                 subprocess.run([sys.argv[2], kind, str(folder / ("replay-" + kind))], check=True)
                 check_page(browser, folder / ("replay-" + kind) / "report.html", plots, replay=True)
             for kind in ("plain", "blind", "hostile"):
@@ -424,7 +475,8 @@ def main():
                 check_fleet(browser, folder / ("fleet-" + kind) / "index.html", devices)
             check_widths(browser, folder / "fleet-400/index.html", (390, 800, 1400))
             for given in sys.argv[4:]:
-                check_page(browser, pathlib.Path(given), replay="<title>Sensor fusion" in pathlib.Path(given).read_text()[:4000])
+                check_page(browser, pathlib.Path(given),
+                           replay="<title>Sensor fusion" in pathlib.Path(given).read_text()[:4000])
         finally:
             browser.close()
     return 1 if faults else 0

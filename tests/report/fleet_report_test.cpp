@@ -1,4 +1,5 @@
-// What is written of a fleet: the same bytes whatever the order, tables that read back, a page of bounded size, nothing injected.
+// What is written of a fleet: the same bytes whatever the order, tables that read back, a page of
+// bounded size, nothing injected.
 
 #include "libchar/report/fleet_report.hpp"
 

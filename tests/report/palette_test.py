@@ -1,8 +1,10 @@
-"""The colours of methods and of sensors on a replay's page can be told apart by readers who miss a kind of cone, on white and on dark paper.
+"""The colours of methods and of sensors on a replay's page can be told apart by readers who miss a kind of
+cone, on white and on dark paper.
 
 usage: palette_test.py PAGE_COMMON_JS
-Distances are those of Oklab (Ottosson 2020) times 100, between any two colours of a palette and from the ink, as seen with normal sight and
-without one kind of cone (Machado, Oliveira and Fernandes 2009); marks stand out from the paper by 3 : 1 (WCAG 2.1, 1.4.11).
+Distances are those of Oklab (Ottosson 2020) times 100, between any two colours of a palette and from the ink,
+as seen with normal sight and without one kind of cone (Machado, Oliveira and Fernandes 2009); marks stand out
+from the paper by 3 : 1 (WCAG 2.1, 1.4.11).
 """
 import itertools
 import re
@@ -14,8 +16,10 @@ SIGHT = {
     "deuteranopia": ((0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881)),
     "tritanopia": ((1.255528, -0.076749, -0.178779), (-0.078411, 0.930809, 0.147602), (0.004733, 0.691367, 0.303900)),
 }
-TO_CONES = ((0.4122214708, 0.5363325363, 0.0514459929), (0.2119034982, 0.6806995451, 0.1073969566), (0.0883024619, 0.2817188376, 0.6299787005))
-TO_LAB = ((0.2104542553, 0.7936177850, -0.0040720468), (1.9779984951, -2.4285922050, 0.4505937099), (0.0259040371, 0.7827717662, -0.8086757660))
+TO_CONES = ((0.4122214708, 0.5363325363, 0.0514459929), (0.2119034982, 0.6806995451, 0.1073969566),
+            (0.0883024619, 0.2817188376, 0.6299787005))
+TO_LAB = ((0.2104542553, 0.7936177850, -0.0040720468), (1.9779984951, -2.4285922050, 0.4505937099),
+          (0.0259040371, 0.7827717662, -0.8086757660))
 LEAST = {"methods": 12, "sensors": 8}
 
 
@@ -53,10 +57,13 @@ def main():
             for (a, b), (name, sight) in itertools.product(itertools.combinations(colours + [ink], 2), SIGHT.items()):
                 seen += 1
                 if distance(a, b, sight) < least:
-                    wrong.append(f"{paper_name} {palette}: {a} and {b} are {distance(a, b, sight):.1f} apart with {name}, less than {least}")
-            wrong += [f"{paper_name} {palette}: {c} has a contrast of {contrast(c, paper):.2f} with the paper" for c in colours if contrast(c, paper) < 3]
+                    wrong.append(f"{paper_name} {palette}: {a} and {b} are {distance(a, b, sight):.1f} apart with "
+                                 f"{name}, less than {least}")
+            wrong += [f"{paper_name} {palette}: {c} has a contrast of {contrast(c, paper):.2f} with the paper"
+                      for c in colours if contrast(c, paper) < 3]
     # The check itself: red and green of one lightness are far apart, and not without a cone.
-    assert distance("#d05050", "#50a050", SIGHT["normal sight"]) > 20 > 10 > distance("#c96a4a", "#8f8f3f", SIGHT["protanopia"])
+    assert distance("#d05050", "#50a050", SIGHT["normal sight"]) > 20 > 10 > distance("#c96a4a", "#8f8f3f",
+                                                                                      SIGHT["protanopia"])
     print("\n".join(wrong) or f"palettes: {seen} pairs are far enough apart")
     return 1 if wrong or seen < 300 else 0
 

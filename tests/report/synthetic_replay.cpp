@@ -77,9 +77,8 @@ AlgorithmResult synthetic_algorithm(const ReplayResult& r,
   a.ns_per_sample = 3 * std::pow(1.6, static_cast<double>((index * 5) % 24));
   a.peak_bytes = 200 + 900 * ((index * 11) % 24);
   a.learning_s = entry.description->needs.reference ? 0.8 : 2e-6;
-  const auto n = static_cast<Eigen::Index>(r.sensors.size());
-  a.weights = Eigen::MatrixXd::Constant(
-      n, static_cast<Eigen::Index>(r.inputs.size()), 1 / static_cast<double>(n));
+  const std::size_t n = r.sensors.size();
+  a.weights.assign(r.inputs.size(), std::vector<double>(n, 1 / static_cast<double>(n)));
   a.weight_distance = a.variance_error = kNan;
   return a;
 }
@@ -173,7 +172,7 @@ ReplayResult synthetic_replay(std::size_t sensors, std::size_t inputs) {
     if (i % 3 == 0 && inputs == 1) {
       a.weight_track = synthetic_track(sensors, 400, 0.1, 100, random);
       a.variance_track = synthetic_track(sensors, 400, 0.004, 100, random);
-      a.variances = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(sensors), 0.004);
+      a.variances.assign(sensors, 0.004);
     }
     if (i % 6 == 0) {
       a.watches_faults = true;
@@ -249,8 +248,8 @@ ReplayResult nothing_scored() {
       input.window_rms = {};
       input.allan.points.clear();
     }
-    a.weights.reset();
-    a.variances.reset();
+    a.weights.clear();
+    a.variances.clear();
     a.weight_track = a.variance_track = {};
     a.watches_faults = false;
     a.faults.clear();

@@ -1,5 +1,5 @@
-// The tables of keys in docs/ are those that the readers and writers use. With LIBCHAR_WRITE_DOCS set in the environment
-// they are brought up to date.
+// The tables of keys in docs/ are those that the readers and writers use. With LIBCHAR_WRITE_DOCS
+// set in the environment they are brought up to date.
 
 #include "libchar/core/fields.hpp"
 #include "libchar/log/binary/sidecar.hpp"

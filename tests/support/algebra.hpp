@@ -1,5 +1,6 @@
 #pragma once
-// Dense algebra as Eigen has it, compiled once: the reference of tests and benches, apart from the library's own (core/dense.hpp).
+// Dense algebra as Eigen has it, compiled once: the reference of tests and benches, apart from the
+// library's own (core/dense.hpp).
 
 #include <Eigen/Core>
 

@@ -1,6 +1,6 @@
 #pragma once
-// A table of a page in docs/ that is made of what the program knows. With LIBCHAR_WRITE_DOCS set in the environment the page is
-// brought up to date instead of checked.
+// A table of a page in docs/ that is made of what the program knows. With LIBCHAR_WRITE_DOCS set in
+// the environment the page is brought up to date instead of checked.
 
 #include <catch2/catch.hpp>
 #include <cstdlib>

@@ -1,5 +1,6 @@
 #pragma once
-// Parts of a record joined as leaves of a log are: siblings by their numbers, what is left of falling height from left to right.
+// Parts of a record joined as leaves of a log are: siblings by their numbers, what is left of
+// falling height from left to right.
 
 #include <cstddef>
 #include <span>

@@ -1,5 +1,6 @@
-// libchar._libchar: the front door of the library for Python. It takes and gives NumPy arrays and plain dictionaries; names, defaults,
-// dataclasses and documentation are Python's (libchar/functions.py).
+// libchar._libchar: the front door of the library for Python. It takes and gives NumPy arrays and
+// plain dictionaries; names, defaults, dataclasses and documentation are Python's
+// (libchar/functions.py).
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -47,7 +48,8 @@ class Interruptible : public Progress {
   std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 
-/// Seconds that the last psd, simulate or replay of this thread spent in the library: tests/bench/python_bench.py has what Python adds.
+/// Seconds that the last psd, simulate or replay of this thread spent in the library:
+/// tests/bench/python_bench.py has what Python adds.
 thread_local double g_library_seconds = 0;
 
 class LibraryCall {

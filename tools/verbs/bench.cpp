@@ -1,4 +1,5 @@
-// bench [FILE…]: run time against error, of ways to get noise coefficients and of fusion algorithms, on models, logs and scenes.
+// bench [FILE…]: run time against error, of ways to get noise coefficients and of fusion
+// algorithms, on models, logs and scenes.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -63,8 +64,8 @@ void check_algorithms(const BenchVerb& verb) {
   for (const std::string& text : verb.sweeps) parse_sweep(text, "--sweep");
 }
 
-/// Is this part done? A part that nothing was given for is left out; how cost grows and what is endured is asked of the program, and not
-/// of a file.
+/// Is this part done? A part that nothing was given for is left out; how cost grows and what is
+/// endured is asked of the program, and not of a file.
 bool is_done(const std::string& part, const BenchVerb& verb, const BenchInputs& inputs) {
   if (part == "scaling" || part == "stress")
     return verb.parts.empty() ? verb.files.empty() : verb.wants(part);

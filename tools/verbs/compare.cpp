@@ -1,4 +1,5 @@
-// compare A B: two reports of one scene side by side, and checks for build servers; or two characterizations, term by term.
+// compare A B: two reports of one scene side by side, and checks for build servers; or two
+// characterizations, term by term.
 
 #include <fmt/format.h>
 

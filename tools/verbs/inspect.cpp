@@ -25,13 +25,15 @@ struct InspectVerb {
 
 std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) {
   const std::string flags = reading_flags(verb.reading, info);
-  const std::string log = shell_word(info.file);
+  const std::string log = libchar::shell_word(info.file);
   if (libchar::is_listing(info)) {
     for (const bool sensor : {true, false})
       for (const libchar::LogTopic& topic : info.topics)
         if (topic.why_not.empty() && topic.sensor == sensor && !topic.fields.empty())
-          return fmt::format(
-              "  next: sensorchar inspect {}{} --topic {}\n", log, flags, shell_word(topic.name));
+          return fmt::format("  next: sensorchar inspect {}{} --topic {}\n",
+                             log,
+                             flags,
+                             libchar::shell_word(topic.name));
   }
   if (info.time.rate_hz <= 0 && !info.time.column.empty())
     return fmt::format("  next: {} with a time stamp {} no sampling rate; two rows would\n",
@@ -41,10 +43,11 @@ std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) 
     return fmt::format(
         "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags);
   const std::string folder = libchar::stem_of_log(info.file);
-  return fmt::format("  next: sensorchar characterize {}{} -o {}\n",
-                     log,
-                     flags,
-                     shell_word((folder.empty() || folder == "-" ? "log" : folder) + "-report"));
+  return fmt::format(
+      "  next: sensorchar characterize {}{} -o {}\n",
+      log,
+      flags,
+      libchar::shell_word((folder.empty() || folder == "-" ? "log" : folder) + "-report"));
 }
 
 void run_inspect(Session& session, const InspectVerb& verb) {

@@ -39,8 +39,8 @@ struct AnchoredPhase {
   std::uint64_t missing = 0;
 };
 
-/// A power of two that brings the largest deviation from the first sample near 1, so that squares neither overflow nor vanish; being
-/// a power of two it changes no bit of the result.
+/// A power of two that brings the largest deviation from the first sample near 1, so that squares
+/// neither overflow nor vanish; being a power of two it changes no bit of the result.
 double balancing_scale(std::span<const double> record);
 
 AnchoredPhase anchored_phase_of_rate(std::span<const double> rate, bool summed);

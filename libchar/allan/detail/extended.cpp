@@ -1,14 +1,20 @@
-// Modified total and Hadamard total deviation (W. J. Riley, NIST SP 1065, 5.2.11, 5.2.12 and 5.2.13). Of a series s (MTOT: phase, HTOT:
-// rate) each window w of 3m samples loses its trend, by the means of its two halves (the middle sample of an odd number in neither),
-// and is continued by its own reflection on both sides to e of 9m. With A_j the mean of e_j … e_{j+m-1},
+// Modified total and Hadamard total deviation (W. J. Riley, NIST SP 1065, 5.2.11, 5.2.12 and
+// 5.2.13). Of a series s (MTOT: phase, HTOT: rate) each window w of 3m samples loses its trend, by
+// the means of its two halves (the middle sample of an odd number in neither), and is continued by
+// its own reflection on both sides to e of 9m. With A_j the mean of e_j … e_{j+m-1},
 //
 //   v = mean over the windows of  1/(6m) sum_{j<6m} (A_{j+2m} - 2 A_{j+m} + A_j)^2
-//   MTOT^2 = v / (2 tau^2),   TTOT = tau MTOT / sqrt(3),   HTOT^2 = v / 6   (HTOT at m = 1: the overlapping Hadamard deviation)
+//   MTOT^2 = v / (2 tau^2),   TTOT = tau MTOT / sqrt(3),   HTOT^2 = v / 6
+//   (HTOT at m = 1: the overlapping Hadamard deviation)
 //
-// Let P_k be the sum of the first k samples of the window without mean and trend (P_{3m} = 0). e is even about both ends of w, so that
-// j and 3m - j give the same square:  m (A_{j+2m} - 2 A_{j+m} + A_j) = P_j + P_{3m-j} - 3 P_{2m-j} + 3 P_{m-j},  with - 3 P_{j-m} for the
-// last where j > m. The other half of the 6m positions is the same of the window turned round. P comes from running sums, so that a
-// window costs about 3m squares: O(N m) an averaging time; beyond the work allowed windows start every m/16 samples or less.
+// Let P_k be the sum of the first k samples of the window without mean and trend (P_{3m} = 0). e is
+// even about both ends of w, so that j and 3m - j give the same square:
+//
+//   m (A_{j+2m} - 2 A_{j+m} + A_j) = P_j + P_{3m-j} - 3 P_{2m-j} + 3 P_{m-j}
+//
+// with - 3 P_{j-m} for the last where j > m. The other half of the 6m positions is the same of the
+// window turned round. P comes from running sums, so that a window costs about 3m squares: O(N m)
+// an averaging time; beyond the work allowed windows start every m/16 samples or less.
 
 #include <cmath>
 #include <cstring>

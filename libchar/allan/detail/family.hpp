@@ -1,6 +1,6 @@
 #pragma once
-// What the families of statistics beside plain differences share: a record without its gaps, pieces of its phase or rate near
-// where they are looked at, and sums of terms in a fixed order.
+// What the families of statistics beside plain differences share: a record without its gaps, pieces
+// of its phase or rate near where they are looked at, and sums of terms in a fixed order.
 
 #include <tbb/parallel_for.h>
 
@@ -55,8 +55,9 @@ std::uint64_t theo_factor(double tau);
 /// Averaging times of TheoH up to this many samples are the Allan deviation's: a fifth of the record.
 std::uint64_t last_allan_factor(std::uint64_t samples);
 
-/// Phase points first, first + 1 … of a stretch, less a straight line (of which the statistics see nothing), times the scale.
-/// The sum begins anew here: what a long record adds up to costs its differences no digits.
+/// Phase points first, first + 1 … of a stretch, less a straight line (of which the statistics see
+/// nothing), times the scale. The sum begins anew here: what a long record adds up to costs its
+/// differences no digits.
 void local_phase(const FamilyInput& input, std::uint64_t first, std::span<double> out);
 /// The same with the line, which begins at 0.
 void local_phase_with_offset(const FamilyInput& input, std::uint64_t first, std::span<double> out);
@@ -72,15 +73,16 @@ struct FamilySum {
 AllanPoint family_point(
     const FamilyInput& input, std::uint64_t m, double tau_s, double divisor, const FamilySum& sum);
 
-/// Every how manieth start is used, so that `starts` of `work` operations each cost no more than is allowed: at most m/16, which
-/// leaves the degrees of freedom as they are to a hundredth.
+/// Every how manieth start is used, so that `starts` of `work` operations each cost no more than is
+/// allowed: at most m/16, which leaves the degrees of freedom as they are to a hundredth.
 std::uint64_t family_stride(const FamilyInput& input,
                             std::uint64_t m,
                             std::uint64_t starts,
                             std::uint64_t work);
 void note_stride(std::uint64_t points, std::vector<std::string>& notes);
 
-/// Sum over blocks of `block` term starts in `stretch`: `of_block(first, count)` adds up the starts first, first + stride …
+/// Sum over blocks of `block` term starts in `stretch`: `of_block(first, count)` adds up the starts
+/// first, first + stride …
 template <typename OfBlock>
 FamilySum over_blocks(std::uint64_t begin,
                       std::uint64_t starts,

@@ -1,12 +1,15 @@
-// Degrees of freedom, 2 E[v]^2 / Var[v], of the variance v that a point is the root of. Terms of a mixture count by their shares in the
-// Allan variance.
+// Degrees of freedom, 2 E[v]^2 / Var[v], of the variance v that a point is the root of. Terms of a
+// mixture count by their shares in the Allan variance.
 //
-//   PDEV          exact, by the covariance of terms as in equivalent_dof.cpp: a term is sum_k h_k x_{i+k} over 2m points, so that
-//                 R(l) = sum_d a_d s(l + d), a the autocorrelation of h and s the covariance of the phase. For m > kExact by the same with m
-//                 = kExact and as many windows in the record: the statistic of the continuous record, sampled kExact times in tau.
-//   MTOT, TTOT    exact degrees of freedom of the modified deviation times what reflection adds, from 4000 simulated records for m = 2 …
-//                 N/16 (docs/theory/allan.md); none at m = 1. The formula of SP 1065, b T/tau - c, promises up to 60 % more at the longest
-//                 times and twice as many at m = 2.
+//   PDEV          exact, by the covariance of terms as in equivalent_dof.cpp: a term is sum_k h_k
+//                 x_{i+k} over 2m points, so that R(l) = sum_d a_d s(l + d), a the autocorrelation
+//                 of h and s the covariance of the phase. For m > kExact by the same with m =
+//                 kExact and as many windows in the record: the statistic of the continuous record,
+//                 sampled kExact times in tau.
+//   MTOT, TTOT    exact degrees of freedom of the modified deviation times what reflection adds,
+//                 from 4000 simulated records for m = 2 … N/16 (docs/theory/allan.md); none at
+//                 m = 1. The formula of SP 1065, b T/tau - c, promises up to 60 % more at the
+//                 longest times and twice as many at m = 2.
 //   HTOT          likewise from the overlapping Hadamard deviation.
 //   Theo1, TheoBR SP 1065, 5.4.5, r = 3/4 m of N phase points, met by simulation to 15 % for r up to N/3
 //   TheoH         that of its parts

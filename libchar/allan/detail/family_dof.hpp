@@ -8,8 +8,8 @@
 
 namespace libchar {
 
-/// Expected modified or Hadamard total variance over the modified or Hadamard one, for the mixture at the point: as SP 1065, 5.4, states it.
-/// 1 of all others.
+/// Expected modified or Hadamard total variance over the modified or Hadamard one, for the mixture
+/// at the point: as SP 1065, 5.4, states it. 1 of all others.
 double family_bias(const DeviationRow& row,
                    const Mixture& theta,
                    const AllanPoint& point,

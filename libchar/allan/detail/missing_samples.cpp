@@ -1,23 +1,28 @@
-// Windows A and B of m samples, a and b of them present, each more than m/2; d = the difference of their means over what is present; n
-// terms:
+// Windows A and B of m samples, a and b of them present, each more than m/2; d = the difference of
+// their means over what is present; n terms:
 //
 //   E sum d^2 / (2 n) = sigma^2(m) + c S^2(m),     c = sum (1/a + 1/b - 2/m) / (2 n),
 //
-// c S^2 being what the missing samples add. For samples missing at random S^2 is the variance within a window of m, whatever the noise
-// (simple random sampling, Cochran 1977, theorem 2.2), which is a sum over the octaves below m (Haar): S^2 = m/(m-1) sum sigma^2(2^j)/2.
-// For gaps of any length each octave counts with the Allan variance A of the indicator "present" there,
+// c S^2 being what the missing samples add. For samples missing at random S^2 is the variance
+// within a window of m, whatever the noise (simple random sampling, Cochran 1977, theorem 2.2),
+// which is a sum over the octaves below m (Haar): S^2 = m/(m-1) sum sigma^2(2^j)/2. For gaps of any
+// length each octave counts with the Allan variance A of the indicator "present" there,
 //
 //   S^2(m) = sum 2^j A(2^j) sigma^2(2^j) / sum A(2^j),     2^j < m:
 //
-// white noise has 2^j sigma^2(2^j) = its variance at every octave, so it is exact for white noise and any gaps; samples missing
-// independently have A ~ 2^-j, which is the sum above. Between octaves S^2 is interpolated as a power of m.
-// Third differences: weights 1, -2, 1 of the windows, so c = sum (1/a + 4/b + 1/c - 6/m) / (6 n). Modified: d is the mean of the
-// Allan terms at m starts in a row, all of which there must be, and c that of theirs times (m^2+1)/(2 m^2), as white noise has it.
+// white noise has 2^j sigma^2(2^j) = its variance at every octave, so it is exact for white noise
+// and any gaps; samples missing independently have A ~ 2^-j, which is the sum above. Between
+// octaves S^2 is interpolated as a power of m. Third differences: weights 1, -2, 1 of the windows,
+// so c = sum (1/a + 4/b + 1/c - 6/m) / (6 n). Modified: d is the mean of the Allan terms at m
+// starts in a row, all of which there must be, and c that of theirs times (m^2+1)/(2 m^2), as white
+// noise has it.
 //
-// v = sum d^2 / (2 n) - c S^2 has the scatter of the whole for what is left, and few degrees of freedom may leave less than nothing.
-// In white noise sum d^2 / (2 n) / (1 + c m) is as good and does neither. So both are weighted: w for the latter, 1 - w for the former,
-// w = 1 / (1 + (z/2)^4), z the distance in standard deviations from what white noise of this S^2 would give (Wilson & Hilferty 1931).
-// Noise bluer than white (z < -4) of which c S^2 leaves less than two standard deviations is hidden, and so it is at longer times.
+// v = sum d^2 / (2 n) - c S^2 has the scatter of the whole for what is left, and few degrees of
+// freedom may leave less than nothing. In white noise sum d^2 / (2 n) / (1 + c m) is as good and
+// does neither. So both are weighted: w for the latter, 1 - w for the former, w = 1 / (1 +
+// (z/2)^4), z the distance in standard deviations from what white noise of this S^2 would give
+// (Wilson & Hilferty 1931). Noise bluer than white (z < -4) of which c S^2 leaves less than two
+// standard deviations is hidden, and so it is at longer times.
 
 #include "libchar/allan/detail/missing_samples.hpp"
 

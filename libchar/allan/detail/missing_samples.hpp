@@ -1,5 +1,6 @@
 #pragma once
-// The Allan variance of a record with missing samples: what its terms sum up to, and what is taken off for what is missing.
+// The Allan variance of a record with missing samples: what its terms sum up to, and what is taken
+// off for what is missing.
 
 #include <cstdint>
 #include <limits>
@@ -23,8 +24,8 @@ class MissingSamples {
     double inflation = 1;  ///< of the relative standard deviation
     double added = 0;      ///< what was taken off
   };
-  /// `divisor` 2 for Allan terms, 6 for Hadamard's; `unit`: the variance of white noise of variance 1, none missing; `dof` of the terms
-  /// in white noise.
+  /// `divisor` 2 for Allan terms, 6 for Hadamard's; `unit`: the variance of white noise of variance
+  /// 1, none missing; `dof` of the terms in white noise.
   Corrected corrected(
       double m, const PresentTerms& terms, double divisor, double unit, double dof) const;
   /// The Allan terms of the next octave, m = 1, 2, 4 …, and the variance that was found for it; not positive: none.

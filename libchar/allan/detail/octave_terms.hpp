@@ -14,8 +14,8 @@ struct Holed {
   double size;
 };
 
-/// Terms of sums of `width` neighbours that start in z[0], z[1] …, touching nothing missing; z scaled so that squares are safe.
-/// `squares` are those of differences of sums, not of means.
+/// Terms of sums of `width` neighbours that start in z[0], z[1] …, touching nothing missing; z
+/// scaled so that squares are safe. `squares` are those of differences of sums, not of means.
 void add_one_by_one(
     const double* z, std::size_t n, std::size_t width, double scale, PresentTerms& tally);
 

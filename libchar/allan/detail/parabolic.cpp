@@ -1,11 +1,13 @@
-// Parabolic deviation: F. Vernotte, M. Lenczner, P.-Y. Bourgeois, E. Rubiola, "The parabolic variance (PVAR): a wavelet variance
-// based on the least-square fit", IEEE Trans. UFFC 63 (2016) 611-623, eq. 8. The frequency in two neighbouring windows of m phase
-// points is the slope of the line that fits them best:
+// Parabolic deviation: F. Vernotte, M. Lenczner, P.-Y. Bourgeois, E. Rubiola, "The parabolic
+// variance (PVAR): a wavelet variance based on the least-square fit", IEEE Trans. UFFC 63 (2016)
+// 611-623, eq. 8. The frequency in two neighbouring windows of m phase points is the slope of the
+// line that fits them best:
 //
-//   PVAR = 72 / (n m^4 tau^2) sum_i [ sum_{k<m} ((m-1)/2 - k) (x_{i+k} - x_{i+m+k}) ]^2,   i = 0 … n - 1,  n = N - 2m + 1
+//   PVAR = 72 / (n m^4 tau^2) sum_i [ sum_{k<m} ((m-1)/2 - k) (x_{i+k} - x_{i+m+k}) ]^2
 //
-// (N rate samples; the last phase point is not used, as in SigmaTheta). At m = 1 no line fits one point: PVAR(1) is the Allan variance.
-// By running sums of x and of k x a term takes a fixed number of operations: O(N) an averaging time.
+// i = 0 … n - 1, n = N - 2m + 1 (N rate samples; the last phase point is not used, as in
+// SigmaTheta). At m = 1 no line fits one point: PVAR(1) is the Allan variance. By running sums of x
+// and of k x a term takes a fixed number of operations: O(N) an averaging time.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
-// Sums in long double: their rounding, 2^-64 of the sum, stays below that of a sample even where a record of 10^7 samples drifts by 10^6
-// standard deviations.
+// Sums in long double: their rounding, 2^-64 of the sum, stays below that of a sample even where a
+// record of 10^7 samples drifts by 10^6 standard deviations.
 
 #include "libchar/allan/detail/present_sums.hpp"
 

@@ -18,8 +18,8 @@ struct PresentSums {
 
 PresentSums present_sums(std::span<const double> record);
 
-/// Terms with starts first, first + stride, … < last: differences of `order` of neighbouring windows' means, order 1 (Allan) or
-/// 2 (Hadamard), of windows of m samples that the record holds.
+/// Terms with starts first, first + stride, … < last: differences of `order` of neighbouring
+/// windows' means, order 1 (Allan) or 2 (Hadamard), of windows of m samples that the record holds.
 PresentTerms present_terms(const PresentSums& sums,
                            int order,
                            std::uint64_t m,

@@ -79,9 +79,10 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
   return factors;
 }
 
-/// How the numbers of a grid, in samples, become averaging factors of a statistic of the Theo family: Theo1 has even factors from 10 on,
-/// and averaging times of three quarters of them. A regular grid of Theo1 is of its factors; a list, and TheoH's grids, which begin with
-/// Allan's factors, are of averaging times.
+/// How the numbers of a grid, in samples, become averaging factors of a statistic of the Theo
+/// family: Theo1 has even factors from 10 on, and averaging times of three quarters of them. A
+/// regular grid of Theo1 is of its factors; a list, and TheoH's grids, which begin with Allan's
+/// factors, are of averaging times.
 class TheoGrid {
  public:
   TheoGrid(const DeviationRow& row, TauGrid grid, std::uint64_t samples)

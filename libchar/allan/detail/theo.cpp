@@ -1,14 +1,18 @@
-// Theo1 (W. J. Riley, NIST SP 1065, 5.2.14; D. A. Howe, Metrologia 43 (2006) S322), m even, tau = 3/4 m dt, N_x = N + 1 phase points:
+// Theo1 (W. J. Riley, NIST SP 1065, 5.2.14; D. A. Howe, Metrologia 43 (2006) S322), m even, tau =
+// 3/4 m dt, N_x = N + 1 phase points:
 //
-//   Theo1^2 = 1 / (0.75 (N_x - m) (m dt)^2) sum_i sum_{d < m/2} [ (x_{c-m/2} - x_{c-d}) + (x_{c+m/2} - x_{c+d}) ]^2 / (m/2 - d)
+//   Theo1^2 = 1 / (0.75 (N_x - m) (m dt)^2) sum_i sum_{d < m/2}
+//             [ (x_{c-m/2} - x_{c-d}) + (x_{c+m/2} - x_{c+d}) ]^2 / (m/2 - d)
 //
-// c = i + m/2, i = 0 … N_x - m - 1. It reaches averaging times of 3/4 of the record, and is biased against the Allan deviation.
+// c = i + m/2, i = 0 … N_x - m - 1. It reaches averaging times of 3/4 of the record, and is biased
+// against the Allan deviation.
 //
 //   TheoBR^2 = Theo1^2 · 1/(n+1) sum_{i=0}^{n} AVAR(9 + 3i) / Theo1^2(12 + 4i),   n = floor(N_x/6 - 3)
 //   TheoH    = overlapping Allan deviation for tau up to a fifth of the record, beyond it TheoBR
 //
-// (SP 1065, 5.2.15 and 5.2.16). A factor m costs O(N m). Where N m is beyond the work allowed, terms start every m/16 samples or
-// less; and the mean ratio of TheoBR is over kFewRatios of the N/6, evenly spaced, in a record too long for all.
+// (SP 1065, 5.2.15 and 5.2.16). A factor m costs O(N m). Where N m is beyond the work allowed,
+// terms start every m/16 samples or less; and the mean ratio of TheoBR is over kFewRatios of the
+// N/6, evenly spaced, in a record too long for all.
 
 #include <cmath>
 #include <cstring>

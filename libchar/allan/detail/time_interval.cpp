@@ -1,10 +1,12 @@
-// Errors of time over an interval tau = m dt (SP 1065, 5.2.17 and 5.2.18; ITU-T G.810), x in seconds times the unit of the rate:
+// Errors of time over an interval tau = m dt (SP 1065, 5.2.17 and 5.2.18; ITU-T G.810), x in
+// seconds times the unit of the rate:
 //
 //   MTIE     max_i ( max x - min x over x_i … x_{i+m} )
 //   TIE rms  sqrt( mean_i (x_{i+m} - x_i)^2 )
 //
-// MTIE: extremes of windows of 2^k points from those of 2^(k-1); a window of any length is two of these that overlap. Factors go up, so
-// that two arrays of the record's length do: O(N (log N + number of factors)). Maxima are exact, whatever their order.
+// MTIE: extremes of windows of 2^k points from those of 2^(k-1); a window of any length is two of
+// these that overlap. Factors go up, so that two arrays of the record's length do: O(N (log N +
+// number of factors)). Maxima are exact, whatever their order.
 
 #include <cmath>
 #include <vector>
@@ -15,7 +17,8 @@
 namespace libchar {
 namespace {
 
-/// Phase of the whole record, each stretch from zero on. A sum of two doubles: an offset of the rate is not cancelled here.
+/// Phase of the whole record, each stretch from zero on. A sum of two doubles: an offset of the
+/// rate is not cancelled here.
 std::vector<double> phase_of_stretches(const FamilyInput& input) {
   std::vector<double> x(input.record.size() + (input.data == DataKind::rate ? 1 : 0));
   for (const IndexRange& s : input.stretches) {

@@ -25,7 +25,8 @@ Exact difference(const std::vector<Exact>& x, std::size_t i, std::size_t m, int 
   return difference(x, i + m, m, 2) - difference(x, i, m, 2);
 }
 
-/// Of `points` values of a series from i on, reflected at both ends after its trend is out: mean square of second differences of means of m.
+/// Of `points` values of a series from i on, reflected at both ends after its trend is out: mean
+/// square of second differences of means of m.
 Exact reflected_window(const std::vector<Exact>& series, std::size_t i, std::size_t m) {
   const std::size_t points = 3 * m, half = points / 2;
   Exact low = 0, high = 0;

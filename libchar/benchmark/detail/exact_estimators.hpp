@@ -1,5 +1,6 @@
 #pragma once
-// The estimators' definitions, term by term in long double (64 bits of mantissa or more): what their fast forms are held against.
+// The estimators' definitions, term by term in long double (64 bits of mantissa or more): what
+// their fast forms are held against.
 
 #include <cstdint>
 #include <span>

@@ -15,8 +15,8 @@ struct StressArray {
   fusion::Array array;
   Eigen::MatrixXd learning, learning_truth;  ///< n and r rows, a column an instant
   Eigen::MatrixXd y, truth;
-  /// A relation to the plain array, which the estimates must have too: moved by `shift`, in units 2^power smaller, channels from last
-  /// to first.
+  /// A relation to the plain array, which the estimates must have too: moved by `shift`, in units
+  /// 2^power smaller, channels from last to first.
   double shift = 0;
   int power = 0;
   bool reversed = false;

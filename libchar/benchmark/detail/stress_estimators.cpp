@@ -1,4 +1,5 @@
-// Estimators of records: every curve against its definition in long double, fits against themselves in comfortable numbers.
+// Estimators of records: every curve against its definition in long double, fits against themselves
+// in comfortable numbers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +21,8 @@ namespace {
 
 // Stated digits (docs/reliability.md).
 constexpr double kMomentDigits = 13, kAllanDigits = 12, kSpectrumDigits = 11, kFitDigits = 6;
-/// Results near the end of the range of a double have no more; a third difference of a drift of 1e6 deviations cancels as many.
+/// Results near the end of the range of a double have no more; a third difference of a drift of 1e6
+/// deviations cancels as many.
 constexpr double kDenormalDigits = 10, kDriftDigits = 9;
 constexpr std::size_t kSegment = 256;
 

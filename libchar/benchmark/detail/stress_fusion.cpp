@@ -1,5 +1,5 @@
-// Fusion algorithms: against themselves where an input has to change the estimates in a known way, weights against long double, else
-// what every estimate must be.
+// Fusion algorithms: against themselves where an input has to change the estimates in a known way,
+// weights against long double, else what every estimate must be.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include "libchar/benchmark/detail/stress_arrays.hpp"
 #include "libchar/benchmark/detail/stress_cells.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 
 namespace libchar {

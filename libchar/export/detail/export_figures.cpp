@@ -211,7 +211,8 @@ Figure positive_figure(const SensorTriad& triad,
 
 namespace {
 
-/// The process that the record itself showed. Another correlation time keeps its driving density: short times stay right.
+/// The process that the record itself showed. Another correlation time keeps its driving density:
+/// short times stay right.
 GaussMarkov own_process(const PlacedModel& placed, const ExportOptions& options) {
   const SensorModel& m = *placed.model;
   GaussMarkov out;

@@ -209,8 +209,8 @@ void put_big_endian(std::string& out, std::uint32_t value) {
   for (const unsigned shift : {24U, 16U, 8U, 0U}) out += static_cast<char>(value >> shift & 0xFFU);
 }
 
-/// The resolution, so that the picture is as large on paper as it was asked for (PNG 1.2, 11.3.5.3): a chunk behind the first one, which
-/// ends at byte 33.
+/// The resolution, so that the picture is as large on paper as it was asked for (PNG 1.2,
+/// 11.3.5.3): a chunk behind the first one, which ends at byte 33.
 void add_resolution(std::string& png, double dpi) {
   constexpr std::size_t kBehindHeader = 33;
   const auto a_metre = static_cast<std::uint32_t>(std::lround(dpi / 0.0254));

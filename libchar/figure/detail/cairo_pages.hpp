@@ -10,7 +10,8 @@ namespace libchar {
 
 bool has_cairo();
 
-/// One page. A PDF has no date of its own (SOURCE_DATE_EPOCH gives it one), so that the same drawing gives the same bytes.
+/// One page. A PDF has no date of its own (SOURCE_DATE_EPOCH gives it one), so that the same
+/// drawing gives the same bytes.
 std::string pdf_of(const Drawing& drawing, Warnings& warnings);
 std::string png_of(const Drawing& drawing, double dpi, Warnings& warnings);
 

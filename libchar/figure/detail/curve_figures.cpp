@@ -90,8 +90,9 @@ std::set<std::string> statistics_of(const std::vector<ChosenCurve>& chosen,
   return found;
 }
 
-/// Several statistics of one curve each (allan --type oadev,mdev) are meant to be seen beside each other, and are told apart by their
-/// names; of which curve is meant is said too where there are several.
+/// Several statistics of one curve each (allan --type oadev,mdev) are meant to be seen beside each
+/// other, and are told apart by their names; of which curve is meant is said too where there are
+/// several.
 void name_by_statistic(std::vector<ChosenCurve>& chosen) {
   std::set<std::string> names;
   for (const ChosenCurve& one : chosen) names.insert(one.name);
@@ -280,7 +281,8 @@ void draw_many(Chart& figure, const std::vector<ChosenCurve>& chosen) {
   }
 }
 
-// What is measured, intervals up to a factor of three beyond it, models and marks up to thirty: none of them may press it into a corner.
+// What is measured, intervals up to a factor of three beyond it, models and marks up to thirty:
+// none of them may press it into a corner.
 void frame(Chart& figure, const std::vector<ChosenCurve>& chosen, const FigureOptions& options) {
   const bool allan = chosen[0].curve->is_allan;
   Extent x(true), measured(true);

@@ -1,6 +1,7 @@
 #pragma once
-// A drawing: lines, areas and texts at their places on a page, in points (1/72 inch) from its upper left corner. The writers of SVG, PDF
-// and PNG all go through this one list, so that their pictures are the same.
+// A drawing: lines, areas and texts at their places on a page, in points (1/72 inch) from its upper
+// left corner. The writers of SVG, PDF and PNG all go through this one list, so that their pictures
+// are the same.
 
 #include <array>
 #include <cstddef>
@@ -75,7 +76,8 @@ struct Drawing {
   void add(DrawnText text);
 };
 
-/// Text in pieces: the digits of a power of ten ("10⁻³") are raised, all else stays as it is. What does not print is written as an escape.
+/// Text in pieces: the digits of a power of ten ("10⁻³") are raised, all else stays as it is. What
+/// does not print is written as an escape.
 std::vector<TextRun> text_runs(std::string_view text);
 
 /// Advance of a text in Liberation Sans (and so in Arial and Helvetica), in points.

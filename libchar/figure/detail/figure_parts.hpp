@@ -43,7 +43,8 @@ std::size_t term_dash(Term term);
 FigureMarker term_marker(Term term);
 std::string term_words(Term term);
 
-/// The smallest and the largest value of a stretch, one above the other: a record drawn so looks as all its samples would.
+/// The smallest and the largest value of a stretch, one above the other: a record drawn so looks as
+/// all its samples would.
 void add_extremes(FigureSeries& series, double x, double low, double high);
 
 /// "Error [rad/s]"; the words alone for a ratio.

@@ -318,7 +318,8 @@ std::vector<double> dash_of(std::size_t number) {
   return kDashes[number % std::size(kDashes)];
 }
 
-// Where the legend stands in a corner is known when the curves are drawn; where no corner is free, all is laid out again above it.
+// Where the legend stands in a corner is known when the curves are drawn; where no corner is free,
+// all is laid out again above it.
 Drawing lay_out(const Chart& figure, const DrawingOptions& options) {
   std::vector<LegendEntry> entries =
       options.legend == LegendPlace::none ? std::vector<LegendEntry>{} : legend_entries(figure);

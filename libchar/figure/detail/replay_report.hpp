@@ -51,8 +51,8 @@ FigureSeries track_series(const std::string& name,
                           bool log,
                           FigureLook look);
 
-/// The algorithms that are asked for; of nothing asked, those that the page shows first: the best, the best without a reference, the mean
-/// and the bounds.
+/// The algorithms that are asked for; of nothing asked, those that the page shows first: the best,
+/// the best without a reference, the mean and the bounds.
 std::vector<const ShownAlgorithm*> shown_algorithms(const ShownReplay& replay,
                                                     const FigureOptions& options);
 

@@ -53,8 +53,8 @@ bool hides_itself(const ReportTrack& track) {
   return *middle > kMostOfRange * (all.high() - all.low());
 }
 
-/// Where nothing else is asked and the whole run hides itself: the stretch in which the first fault begins, else the first that was kept
-/// with every instant.
+/// Where nothing else is asked and the whole run hides itself: the stretch in which the first fault
+/// begins, else the first that was kept with every instant.
 FigureOptions with_readable_stretch(const ShownReplay& replay, FigureOptions options) {
   const MapReader run = open_report(replay.map, "run");
   if (options.x_range || !run.has("close_ups")) return options;

@@ -16,8 +16,8 @@ MapReader open_report(const MapReader& map, std::string_view key);
 /// The elements of a list of maps.
 std::vector<MapReader> open_reports(const MapReader& map, std::string_view key);
 
-/// A list of numbers with nulls, which become NaN; empty where the key is absent. Of another length than `length` (0: any) it is
-/// refused. Throws Error(input) with the place.
+/// A list of numbers with nulls, which become NaN; empty where the key is absent. Of another length
+/// than `length` (0: any) it is refused. Throws Error(input) with the place.
 std::vector<double> report_numbers(const MapReader& map,
                                    std::string_view key,
                                    std::size_t length = 0);
@@ -33,13 +33,15 @@ struct ReportIntervals {
 };
 ReportIntervals report_intervals(const MapReader& map, std::string_view key, std::size_t length);
 
-/// A list of one or more series, each of `length` numbers: smallest and largest values, the same where there is one `value`.
+/// A list of one or more series, each of `length` numbers: smallest and largest values, the same
+/// where there is one `value`.
 struct ReportTrack {
   std::vector<double> time_s;
   std::vector<std::vector<double>> low, high;
   bool empty() const { return time_s.empty(); }
 };
-/// Of an object {time_s, low, high}, or {low, high} and {value} whose times stand beside it. Empty where the key is absent or null.
+/// Of an object {time_s, low, high}, or {low, high} and {value} whose times stand beside it. Empty
+/// where the key is absent or null.
 ReportTrack report_track(const MapReader& map,
                          std::string_view key,
                          const std::vector<double>& time_s = {});

@@ -24,8 +24,9 @@ struct Tick {
   bool strong = true;  ///< a decade, or any of a linear axis
 };
 
-/// Round values on the axis: 1 … 9 of each decade where it is logarithmic, with words at decades (every second or third where there are
-/// many, at 2 and 5 where there are few), else even steps of 1, 2 or 5. About one word for each `apart` of `length`.
+/// Round values on the axis: 1 … 9 of each decade where it is logarithmic, with words at decades
+/// (every second or third where there are many, at 2 and 5 where there are few), else even steps of
+/// 1, 2 or 5. About one word for each `apart` of `length`.
 std::vector<Tick> axis_ticks(const FigureAxis& axis, double length, double apart);
 
 }  // namespace libchar

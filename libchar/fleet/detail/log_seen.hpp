@@ -1,8 +1,9 @@
 #pragma once
-// Which file a result was computed from, where its digest does not say so by itself. A digest that was stated is a claim until a worker has
-// found it to be that of the log; and a stretch, which is a part of a log, cannot check the digest of the whole. Such results hold beside
-// them what the log was when it was read, its path, size and time of change (log.seen), and count for a unit only as long as its log is
-// still that. Times are compared for being the same, never for being earlier.
+// Which file a result was computed from, where its digest does not say so by itself. A digest that
+// was stated is a claim until a worker has found it to be that of the log; and a stretch, which is
+// a part of a log, cannot check the digest of the whole. Such results hold beside them what the log
+// was when it was read, its path, size and time of change (log.seen), and count for a unit only as
+// long as its log is still that. Times are compared for being the same, never for being earlier.
 
 #include <filesystem>
 #include <optional>
@@ -21,8 +22,8 @@ bool needs_log_seen(const FleetUnit& unit);
 /// Into the folder of a result, which may be published already. Throws Error(output).
 void write_log_seen(const std::filesystem::path& folder, const std::string& seen);
 
-/// Whether the result `id` was computed from, or its digest found in, this log as it stands; where the log cannot be looked at (a merge on
-/// another machine), whether it has its path.
+/// Whether the result `id` was computed from, or its digest found in, this log as it stands; where
+/// the log cannot be looked at (a merge on another machine), whether it has its path.
 bool is_log_seen(const std::filesystem::path& fleet, const std::string& id, const std::string& log);
 
 /// Whether a result that is there counts for this unit.

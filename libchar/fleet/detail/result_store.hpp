@@ -1,7 +1,8 @@
 #pragma once
-// Where the results of units are: DIR/results/AB/ID/, a folder for each, whole or absent. A worker fills a folder of its own and gives it its
-// name at the end (rename(2)): of two workers on one unit the second finds the name taken and lets go of its own, and a worker that is
-// killed leaves nothing that is taken for a result. Nothing here looks at a clock.
+// Where the results of units are: DIR/results/AB/ID/, a folder for each, whole or absent. A worker
+// fills a folder of its own and gives it its name at the end (rename(2)): of two workers on one
+// unit the second finds the name taken and lets go of its own, and a worker that is killed leaves
+// nothing that is taken for a result. Nothing here looks at a clock.
 
 #include <filesystem>
 #include <optional>
@@ -30,8 +31,8 @@ class ResultFolder {
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  /// Gives it its name. False: another worker was first, whose result stays. One that is not whole, or of a log that was another when it
-  /// was read (log_seen.hpp), is put aside under another name.
+  /// Gives it its name. False: another worker was first, whose result stays. One that is not whole,
+  /// or of a log that was another when it was read (log_seen.hpp), is put aside under another name.
   bool publish();
 
  private:
@@ -49,7 +50,8 @@ std::optional<DeviceRecord> stored_record(const std::filesystem::path& fleet,
 
 /// The file with the partial state of a channel (from 0) of a stretch, in the folder of its result.
 std::string state_file(std::size_t channel);
-/// The files of all channels of a stretch; none where there is no result. Throws Error(input) for one that is damaged, by name.
+/// The files of all channels of a stretch; none where there is no result. Throws Error(input) for
+/// one that is damaged, by name.
 std::vector<std::string> stored_states(const std::filesystem::path& fleet, const std::string& id);
 
 /// Whether there is a whole result; a damaged one is none.

@@ -20,8 +20,8 @@ std::string trimmed(const std::string& cell) {
   throw Error({ErrorKind::input, "E0781", fmt::format("{}:{}:1", path, line), what, "", ""});
 }
 
-/// A cell that begins with a quotation mark ends with one, and has two for each of its own (RFC 4180). No other character escapes: a path
-/// may hold backslashes.
+/// A cell that begins with a quotation mark ends with one, and has two for each of its own (RFC
+/// 4180). No other character escapes: a path may hold backslashes.
 std::vector<std::string> cells_of(const std::string& line,
                                   char separator,
                                   const std::string& path,

@@ -20,9 +20,9 @@ struct TableText {
   std::vector<TableRow> rows;
 };
 
-/// Separated by commas, or where the head has none by semicolons, or by tabs; cells may be quoted; empty lines and those that begin with #
-/// are left out. Throws Error(input) for a row of another number of cells, a quote that is never closed.
-/// Nothing behind `most_rows` rows is looked at.
+/// Separated by commas, or where the head has none by semicolons, or by tabs; cells may be quoted;
+/// empty lines and those that begin with # are left out. Throws Error(input) for a row of another
+/// number of cells, a quote that is never closed. Nothing behind `most_rows` rows is looked at.
 TableText parse_table_text(std::string_view text,
                            const std::string& path,
                            std::size_t most_rows = SIZE_MAX);

@@ -18,8 +18,9 @@ std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs,
                                        const std::filesystem::path& folder,
                                        const JobOptions& options);
 
-/// `options.program` as a shell takes it: the path of a program that is there is one word, whatever is in it, and leads there from any folder;
-/// all else is a command line ("apptainer exec x.sif sensorchar"). Throws Error(usage) for one of several lines.
+/// `options.program` as a shell takes it: the path of a program that is there is one word, whatever
+/// is in it, and leads there from any folder; all else is a command line ("apptainer exec x.sif
+/// sensorchar"). Throws Error(usage) for one of several lines.
 std::string command_of(const JobOptions& options);
 
 /// "sensorchar fleet run …" of the tasks in jobs/NAME.txt; `job`: NAME as the shell takes it.

@@ -220,7 +220,7 @@ Eigen::MatrixXd BestAxes::weights() const {
 }
 
 void BestAxes::exchange(LearntExchange& with) {
-  with.numbers("mean_square_errors", squares_);
+  with.numbers("mean_square_errors", span_of(squares_));
   if (with.taking_in()) choose_all();
 }
 

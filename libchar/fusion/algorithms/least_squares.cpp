@@ -208,9 +208,9 @@ void LearntMean::take(const LearntWeights& learnt) {
 void LearntMean::exchange(LearntExchange& with, Eigen::Index channels) {
   LearntWeights learnt = learnt_;
   if (with.taking_in()) learnt.gain = learnt.bias = learnt.weights = Eigen::VectorXd(channels);
-  with.numbers("gains", learnt.gain);
-  with.numbers("biases", learnt.bias);
-  with.numbers("weights", learnt.weights);
+  with.numbers("gains", span_of(learnt.gain));
+  with.numbers("biases", span_of(learnt.bias));
+  with.numbers("weights", span_of(learnt.weights));
   with.number("constant", learnt.constant);
   with.number("variance", learnt.variance);
   if (!with.taking_in()) return;

@@ -17,8 +17,10 @@ constexpr std::size_t kGroup = 16;  // starts whose smallest distance is known
 
 using FourBits = std::int64_t __attribute__((vector_size(32)));
 
-/// D_s of all starts, NaN where a value or the successor is missing, the smallest of each group (the last one may be shorter),
-/// and the smallest of each class: starts as many apart as there are classes, a multiple of the groups' size. Lanes are separate starts, so wider registers give the same bits.
+/// D_s of all starts, NaN where a value or the successor is missing, the smallest of each group
+/// (the last one may be shorter), and the smallest of each class: starts as many apart as there are
+/// classes, a multiple of the groups' size. Lanes are separate starts, so wider registers give the
+/// same bits.
 LIBCHAR_WIDE_LANES void cityblock(const double* series,
                                   std::size_t starts,
                                   const double* query,
@@ -70,8 +72,8 @@ LIBCHAR_WIDE_LANES std::int64_t at_most(const double* values, std::size_t count,
   return sum;
 }
 
-/// A limit that at least `wanted` of the values, none negative, keep, and few more: by halves of what lies between in steps of
-/// the last bit. Infinite where so many are not finite.
+/// A limit that at least `wanted` of the values, none negative, keep, and few more: by halves of
+/// what lies between in steps of the last bit. Infinite where so many are not finite.
 double limit_for(const double* values, std::size_t count, std::int64_t wanted) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr int kHalves = 12;
@@ -128,7 +130,8 @@ std::span<const Neighbour> DelaySearch::nearest(const double* series,
             smallest_.data(),
             of_class_.data(),
             of_class_.size());
-  // As many classes as neighbours have one at or below it; what is near comes one after the other, so hardly two in a class.
+  // As many classes as neighbours have one at or below it; what is near comes one after the other,
+  // so hardly two in a class.
   const double limit =
       limit_for(of_class_.data(), of_class_.size(), static_cast<std::int64_t>(neighbours_));
   const std::size_t count = take_within(limit, starts);

@@ -4,9 +4,9 @@
 //   D_s = sum_j |z_{s+j} - q_j|
 // among those whose d values and successor z_{s+d} are all there. The search is exact: all
 // distances (vectorised over s), then one pass that keeps the M best in order: those within a
-// limit that is known from the smallest distances of 3 M classes of starts. Equal distances go by the smaller start. A thousand stretches of six values fit
-// the first cache; a tree would not pay (m = 1000, d = 6: SciPy's k-d tree 20 us, all distances
-// 13 us).
+// limit that is known from the smallest distances of 3 M classes of starts. Equal distances go by
+// the smaller start. A thousand stretches of six values fit the first cache; a tree would not pay
+// (m = 1000, d = 6: SciPy's k-d tree 20 us, all distances 13 us).
 
 #include <span>
 #include <vector>

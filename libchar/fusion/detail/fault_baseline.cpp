@@ -51,7 +51,8 @@ LIBCHAR_WIDE_LANES void predict_all(double* q, double* y, std::size_t padded) {
   }
 }
 
-/// The square roots of four numbers that are not negative. (The compiler keeps a way to errno open and takes them one by one.)
+/// The square roots of four numbers that are not negative. (The compiler keeps a way to errno open
+/// and takes them one by one.)
 inline void take_roots(double* four) {
 #if defined(LIBCHAR_X86_64)
   _mm_storeu_pd(four, _mm_sqrt_pd(_mm_loadu_pd(four)));

@@ -38,7 +38,8 @@ namespace libchar::fusion {
 
 struct FaultDetectorOptions {
   double false_alarm_s = 1e5;  ///< mean time between false alarms of the array
-  /// own samples that must be consistent before a sensor is let in; 0: 200, or those of 2 s where they are fewer (64 at least)
+  /// own samples that must be consistent before a sensor is let in; 0: 200, or those of 2 s where
+  /// they are fewer (64 at least)
   std::int64_t recovery = 0;
   std::int64_t learning = 1000;  ///< own samples before a sensor is judged
 };

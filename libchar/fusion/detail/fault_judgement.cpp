@@ -239,8 +239,8 @@ void FaultDetector::doubt(const Isolation& found) {
   next_look_ = now_ + 2 * kWindow;
 }
 
-/// No set is consistent, or a fault was over before it could be confirmed. Once may be a disturbance of a moment; again and again is another noise than
-/// the one that was learnt.
+/// No set is consistent, or a fault was over before it could be confirmed. Once may be a
+/// disturbance of a moment; again and again is another noise than the one that was learnt.
 void FaultDetector::misfit(int sensor) {
   // A sensor that fails again and again for a moment is its own matter.
   bank_.reset();

@@ -66,7 +66,8 @@ struct TrustRegion {
   }
 };
 
-/// y, and the decrease of half the sum of squares that it promises; none where the system has no solution or promises nothing.
+/// y, and the decrease of half the sum of squares that it promises; none where the system has no
+/// solution or promises nothing.
 struct ScaledStep {
   Eigen::VectorXd y;
   double promised;

@@ -2,7 +2,8 @@
 // Levenberg-Marquardt training of a tanh network on standardised data, from seeded starts: with J and e of
 // network_normals.hpp and S = 1/(1 + |columns of J|) at the start,
 //   (S J'J S + D) y = -S J'e,   D = clamp(diag(S J'J S), 1e-6, 1e32) / radius,   step S y;
-// the radius follows how much of the promised decrease came true [Madsen, Nielsen, Tingleff 2004, 3.2, as Ceres has it].
+// the radius follows how much of the promised decrease came true [Madsen, Nielsen, Tingleff 2004,
+// 3.2, as Ceres has it].
 #include <cstdint>
 #include <vector>
 

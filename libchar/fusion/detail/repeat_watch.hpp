@@ -10,8 +10,8 @@
 // its samples (20 Hz in a log of 200 Hz) is not stuck. At the end of the range the others need not
 // move (they may stand there too): the sensor came there by a step of m and repeats its extreme, P = q / m.
 //
-// Nor is one stuck before it has repeated three times as often in a row as it ever did and went on: what a healthy sensor of coarse steps
-// and slow response does, it has done before.
+// Nor is one stuck before it has repeated three times as often in a row as it ever did and went on:
+// what a healthy sensor of coarse steps and slow response does, it has done before.
 //
 // A range once known is known: the sensor is saturated whenever it says that value.
 

@@ -1,7 +1,8 @@
 #pragma once
-// The fault detector (fault_detector.hpp) in front of any estimate that goes on without a missing sample: what a sensor says while it is
-// out is missing for the estimate. Weights that are fixed know nothing of noise: a sensor whose variance is twice what it was is out as
-// well (with weight w of n alike it would cost more than it brings from (n + 1)/(n - 1) times on).
+// The fault detector (fault_detector.hpp) in front of any estimate that goes on without a missing
+// sample: what a sensor says while it is out is missing for the estimate. Weights that are fixed
+// know nothing of noise: a sensor whose variance is twice what it was is out as well (with weight w
+// of n alike it would cost more than it brings from (n + 1)/(n - 1) times on).
 
 #include <array>
 #include <memory>

@@ -1,6 +1,7 @@
 #pragma once
-// A parser that others wrote, in a process of its own: what crashes it or makes it run for ever ends that process and nothing else. No
-// program is started; the process is a copy of this one that answers questions through pipes and may write no file.
+// A parser that others wrote, in a process of its own: what crashes it or makes it run for ever
+// ends that process and nothing else. No program is started; the process is a copy of this one that
+// answers questions through pipes and may write no file.
 
 #include <sys/types.h>
 

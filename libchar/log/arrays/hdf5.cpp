@@ -1,4 +1,5 @@
-// HDF5 files, read by the HDF5 library in a process of its own: crafted files crash it, and it follows names of other files unless told not to.
+// HDF5 files, read by the HDF5 library in a process of its own: crafted files crash it, and it
+// follows names of other files unless told not to.
 
 #include <fmt/format.h>
 

@@ -8,7 +8,8 @@
 
 namespace libchar {
 
-/// `kind` stands in the dialect ("HDF5"). Throws Error(input): E0465 for what cannot be read, E0467 when the library is not built in.
+/// `kind` stands in the dialect ("HDF5"). Throws Error(input): E0465 for what cannot be read, E0467
+/// when the library is not built in.
 std::unique_ptr<ArrayContainer> open_hdf5_file(const std::string& path, const std::string& kind);
 
 }  // namespace libchar

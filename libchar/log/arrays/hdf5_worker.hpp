@@ -1,6 +1,7 @@
 #pragma once
-// What runs in the child process (child_process.hpp): the HDF5 library, which opens one file, lists its datasets and reads rows of them.
-// Nothing outside of the file is touched: external and soft links, external storage, virtual datasets and plug-ins are never followed.
+// What runs in the child process (child_process.hpp): the HDF5 library, which opens one file, lists
+// its datasets and reads rows of them. Nothing outside of the file is touched: external and soft
+// links, external storage, virtual datasets and plug-ins are never followed.
 
 #include <cstdint>
 #include <string>
@@ -30,8 +31,8 @@ struct Hdf5Question {
   std::uint64_t array = 0, row = 0, rows = 0, column = 0, planar = 0;
 };
 
-/// Answers are a u64 of the bytes that follow, or ~0 for what cannot be read; the first one is the listing, without a question.
-/// `path` is a const std::string*.
+/// Answers are a u64 of the bytes that follow, or ~0 for what cannot be read; the first one is the
+/// listing, without a question. `path` is a const std::string*.
 void serve_hdf5(const void* path, int questions, int answers);
 
 }  // namespace libchar

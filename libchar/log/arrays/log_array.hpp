@@ -1,6 +1,6 @@
 #pragma once
-// The contract of containers of named arrays (.npz, MATLAB, HDF5): a container lists its arrays and reads rows of one. What makes tables
-// of them is common (array_tables.hpp).
+// The contract of containers of named arrays (.npz, MATLAB, HDF5): a container lists its arrays and
+// reads rows of one. What makes tables of them is common (array_tables.hpp).
 
 #include <cstddef>
 #include <cstdint>
@@ -62,7 +62,8 @@ struct ArrayPiece {
 class ArrayCursor {
  public:
   virtual ~ArrayCursor() = default;
-  /// The next `rows` elements of every column that was asked for; never more in all than there are. Pieces hold until the next call.
+  /// The next `rows` elements of every column that was asked for; never more in all than there are.
+  /// Pieces hold until the next call.
   virtual void next(std::size_t rows, std::vector<ArrayPiece>& pieces) = 0;
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 // MATLAB files of version 5 (save -v6 and -v7, SciPy's savemat, Octave's -mat7-binary) as a container of arrays.
-// Source: MathWorks, MAT-File Format (R2023b), chapter 1: 128 bytes of header, then data elements, compressed or not, matrices within
-// matrices. Read here and not by a library: in constant memory where elements are compressed, and without trust in any length.
+// Source: MathWorks, MAT-File Format (R2023b), chapter 1: 128 bytes of header, then data elements,
+// compressed or not, matrices within matrices. Read here and not by a library: in constant memory
+// where elements are compressed, and without trust in any length.
 
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
-// The .npz format: a ZIP archive of .npy arrays (numpy.savez, numpy.savez_compressed). NumPy writes a ZIP64 field into every local header,
-// and members stand at any byte.
+// The .npz format: a ZIP archive of .npy arrays (numpy.savez, numpy.savez_compressed). NumPy writes
+// a ZIP64 field into every local header, and members stand at any byte.
 
 #include <fmt/format.h>
 

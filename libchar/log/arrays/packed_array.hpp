@@ -22,8 +22,9 @@ struct PackedArray {
       false;  ///< the elements are the last of a compressed stream, which ends in a checksum of its own
 };
 
-/// `file` and `consumed`, to which bytes of the file are added, outlive the cursor. Rows come in constant memory in either order; columns
-/// that stand one after the other are inflated once for each. Throws Error(input) E0462 for broken data.
+/// `file` and `consumed`, to which bytes of the file are added, outlive the cursor. Rows come in
+/// constant memory in either order; columns that stand one after the other are inflated once for
+/// each. Throws Error(input) E0462 for broken data.
 std::unique_ptr<ArrayCursor> open_packed_array(const BinaryFile& file,
                                                const PackedArray& array,
                                                const ArrayRows& rows,

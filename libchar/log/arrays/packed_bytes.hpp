@@ -1,5 +1,6 @@
 #pragma once
-// Bytes of a stretch of a file in their order, inflated where they are compressed: members of ZIP archives, elements of MATLAB files.
+// Bytes of a stretch of a file in their order, inflated where they are compressed: members of ZIP
+// archives, elements of MATLAB files.
 
 #include <cstddef>
 #include <cstdint>

@@ -113,7 +113,8 @@ Directory find_directory(const BinaryFile& file) {
   return directory;
 }
 
-// Sizes and offset that do not fit 32 bits stand in the extra field 1, in this order, those only that are 0xFFFFFFFF in the entry.
+// Sizes and offset that do not fit 32 bits stand in the extra field 1, in this order, those only
+// that are 0xFFFFFFFF in the entry.
 bool widen(const Bytes& extra,
            std::size_t begin,
            std::size_t end,

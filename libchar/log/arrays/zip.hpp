@@ -1,6 +1,6 @@
 #pragma once
-// The directory of a ZIP archive (PKWARE APPNOTE 6.3): which members it has and where their bytes stand. Members are never written to
-// a disk, so their names are names and nothing else.
+// The directory of a ZIP archive (PKWARE APPNOTE 6.3): which members it has and where their bytes
+// stand. Members are never written to a disk, so their names are names and nothing else.
 
 #include <cstdint>
 #include <string>
@@ -18,8 +18,8 @@ struct ZipMember {
   std::string why_not;  ///< why it cannot be read ("is encrypted"); "" when it can
 };
 
-/// All members in the order of the directory. Throws Error(input) E0460 for what is no whole archive, E0462 for members that claim more
-/// than deflate can hold or that overlap (bombs).
+/// All members in the order of the directory. Throws Error(input) E0460 for what is no whole
+/// archive, E0462 for members that claim more than deflate can hold or that overlap (bombs).
 std::vector<ZipMember> read_zip_directory(const BinaryFile& file);
 
 }  // namespace libchar

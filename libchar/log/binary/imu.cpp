@@ -1,6 +1,7 @@
-// The .imu files of the SMAC and EPFL tools (read.imu of the R packages avar, gmwm and wv): records of a time in seconds and six increments,
-// three of angle and three of velocity, without a header. Which instrument wrote them decides the type and the scales, and must be told.
-// rate = round(1 / mean step of the times); value = increment · rate · scale.
+// The .imu files of the SMAC and EPFL tools (read.imu of the R packages avar, gmwm and wv): records
+// of a time in seconds and six increments, three of angle and three of velocity, without a header.
+// Which instrument wrote them decides the type and the scales, and must be told. rate = round(1 /
+// mean step of the times); value = increment · rate · scale.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 #pragma once
-// Stamps stored as binary numbers become whole nanoseconds: exactly where they are integers, even where a double could not hold them.
+// Stamps stored as binary numbers become whole nanoseconds: exactly where they are integers, even
+// where a double could not hold them.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +19,9 @@ struct StampFormat {
   std::int64_t unit_ns = 1;
 };
 
-/// Reads out.size() stamps that stand `stride` bytes apart from `first`. `where` says where stamp i stands, for the front of an error.
-/// Throws Error(input) for a stamp that is NaN (E0313) or does not fit 64-bit nanoseconds (E0314).
+/// Reads out.size() stamps that stand `stride` bytes apart from `first`. `where` says where stamp i
+/// stands, for the front of an error. Throws Error(input) for a stamp that is NaN (E0313) or does
+/// not fit 64-bit nanoseconds (E0314).
 void read_stamps(const std::byte* first,
                  std::size_t stride,
                  const StampFormat& format,

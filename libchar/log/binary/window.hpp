@@ -1,5 +1,6 @@
 #pragma once
-// A binary file read from front to end through one buffer: any few bytes of it stand together in memory, and no more of it does.
+// A binary file read from front to end through one buffer: any few bytes of it stand together in
+// memory, and no more of it does.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,8 +12,8 @@ namespace libchar {
 
 class FileWindow {
  public:
-  /// `block_bytes` are read at a time (more where a piece is longer), and `kept` bytes in front of them: who looks ahead by less
-  /// than that and comes back reads nothing twice.
+  /// `block_bytes` are read at a time (more where a piece is longer), and `kept` bytes in front of
+  /// them: who looks ahead by less than that and comes back reads nothing twice.
   FileWindow(const BinaryFile& file, std::size_t block_bytes, std::size_t kept)
       : file_(&file), block_(block_bytes == 0 ? 1 : block_bytes), kept_(kept) {}
 

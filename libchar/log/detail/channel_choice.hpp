@@ -20,8 +20,8 @@ struct TableColumns {
   bool positions_skip_time = false;  ///< c0, c1… count the columns that are not the time (else all)
 };
 
-/// The columns of options.channels, or all but the time, in file order. Throws Error(usage) for an unknown name, with the nearest
-/// known one, and Error(input) when nothing is left.
+/// The columns of options.channels, or all but the time, in file order. Throws Error(usage) for an
+/// unknown name, with the nearest known one, and Error(input) when nothing is left.
 std::vector<std::size_t> choose_channels(const TableColumns& table,
                                          const ReadOptions& options,
                                          const std::string& file);
@@ -32,8 +32,8 @@ std::vector<std::size_t> choose_channels(const TableColumns& table,
                                  const ReadOptions& options,
                                  const std::string& file);
 
-/// What to say of a channel that is not in the log: the nearest of its names, or all of them; that --names give new names to
-/// what -c chooses, when the word is one of those.
+/// What to say of a channel that is not in the log: the nearest of its names, or all of them; that
+/// --names give new names to what -c chooses, when the word is one of those.
 std::string channel_hint(const std::string& wanted,
                          const std::vector<std::string>& names,
                          const ReadOptions& options);

@@ -13,8 +13,8 @@ namespace libchar {
 /// Without blanks and tabs at its ends.
 std::string_view trimmed(std::string_view text);
 
-/// "gyro_x [deg/s]", "Time (s)", "t_ns" → name and unit ("" when there is none); a suffix behind '_' counts only when it is a
-/// known unit.
+/// "gyro_x [deg/s]", "Time (s)", "t_ns" → name and unit ("" when there is none); a suffix behind
+/// '_' counts only when it is a known unit.
 std::pair<std::string, std::string> name_and_unit(std::string_view column);
 
 /// Are the channels called c0, c1… in this order, as a reader calls channels without names?

@@ -1,5 +1,6 @@
 #pragma once
-// One row of the table of log formats: its description and the functions behind it. A format exports its row and nothing else.
+// One row of the table of log formats: its description and the functions behind it. A format
+// exports its row and nothing else.
 
 #include <memory>
 #include <string>
@@ -16,8 +17,8 @@ namespace libchar {
 
 struct Format {
   LogFormat about;
-  /// Is a file of this format beyond doubt (a magic number that nothing else has), whatever it is called? Asked before suffixes;
-  /// nullptr when no beginning is that clear.
+  /// Is a file of this format beyond doubt (a magic number that nothing else has), whatever it is
+  /// called? Asked before suffixes; nullptr when no beginning is that clear.
   bool (*certain)(std::string_view first_bytes) = nullptr;
   /// Does a file look like this format? Asked when no suffix decides.
   bool (*sniff)(const std::string& path, std::string_view first_bytes) = nullptr;

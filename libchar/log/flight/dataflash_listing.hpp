@@ -1,5 +1,6 @@
 #pragma once
-// What a DataFlash log holds, found in one pass over its messages: topics, one for each sensor of a kind, their rows and stamps.
+// What a DataFlash log holds, found in one pass over its messages: topics, one for each sensor of a
+// kind, their rows and stamps.
 
 #include <cstdint>
 #include <map>

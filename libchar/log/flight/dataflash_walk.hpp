@@ -21,7 +21,8 @@ std::uint64_t dataflash_fill(const BinaryFile& file);
 
 class DataflashWalk {
  public:
-  /// `formats` is looked at while messages are read: lengths are added as definitions come. Damage is counted in `losses`.
+  /// `formats` is looked at while messages are read: lengths are added as definitions come. Damage
+  /// is counted in `losses`.
   DataflashWalk(const BinaryFile& file,
                 std::size_t block_bytes,
                 const DataflashFormats& formats,

@@ -1,6 +1,7 @@
-// PX4's ULog: every subscription ("sensor_gyro 0") is a topic with stamps of its own. The samples of a FIFO message are rows:
-// sample k of n was taken at timestamp_sample - (n - 1 - k) dt, and is scale · count.
-// Source: docs.px4.io, "ULog File Format"; PX4's SensorGyroFifo.msg; the rule of the stamps is that of PX4's flight review.
+// PX4's ULog: every subscription ("sensor_gyro 0") is a topic with stamps of its own. The samples
+// of a FIFO message are rows: sample k of n was taken at timestamp_sample - (n - 1 - k) dt, and is
+// scale · count. Source: docs.px4.io, "ULog File Format"; PX4's SensorGyroFifo.msg; the rule of the
+// stamps is that of PX4's flight review.
 
 #include <fmt/format.h>
 
@@ -168,8 +169,8 @@ void UlogReader::select(std::size_t topic,
   walk_->go_to(log_.contents[topic].first_byte);
 }
 
-// PX4 writes zero where it does not know the time. One zero in front of a log that soon goes on is its beginning; where all are zero
-// there is no time axis, which is for the caller to say.
+// PX4 writes zero where it does not know the time. One zero in front of a log that soon goes on is
+// its beginning; where all are zero there is no time axis, which is for the caller to say.
 bool UlogReader::stamp_usable(std::uint64_t stamp, std::uint64_t messages_before) const {
   const UlogStamps& stamps = stamps_of(log_.contents[topic_]);
   if (stamp != 0 || stamps.last == 0) return stamp <= kLargestStamp;

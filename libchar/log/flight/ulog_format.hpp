@@ -1,5 +1,6 @@
 #pragma once
-// Formats of ULog messages: "name:type field;type[n] field;…", nested in each other, as flat lists of numbers at their bytes.
+// Formats of ULog messages: "name:type field;type[n] field;…", nested in each other, as flat lists
+// of numbers at their bytes.
 
 #include <cstdint>
 #include <map>
@@ -29,7 +30,8 @@ class UlogFormats {
   /// Takes the text of one definition. One that contradicts an earlier one of its name makes that name unusable.
   void add(std::string_view text);
 
-  /// The fields of a message of this format. All layouts together have a bound, so that a small file cannot ask for endless work.
+  /// The fields of a message of this format. All layouts together have a bound, so that a small
+  /// file cannot ask for endless work.
   UlogLayout layout(const std::string& name);
 
   /// Was a name defined twice, and not alike?

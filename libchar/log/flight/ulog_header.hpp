@@ -23,7 +23,8 @@ bool is_ulog(std::string_view first_bytes);
 /// Throws Error(input) for what is no ULog (E0480), is encrypted (E0481) or needs what this reader lacks (E0482).
 UlogHeader read_ulog_header(const BinaryFile& file, Warnings& warnings);
 
-/// What an information message says, as text: the value of a char array, or a version of four bytes as "v1.14.3"; "" for others.
+/// What an information message says, as text: the value of a char array, or a version of four bytes
+/// as "v1.14.3"; "" for others.
 struct UlogInfo {
   std::string key, value;
 };

@@ -1,5 +1,6 @@
 #pragma once
-// What a ULog holds, found in one pass over the heads of its messages: topics, their formats, rows and stamps, and what is lost.
+// What a ULog holds, found in one pass over the heads of its messages: topics, their formats, rows
+// and stamps, and what is lost.
 
 #include <array>
 #include <cstdint>

@@ -7,7 +7,8 @@
 
 namespace libchar {
 
-/// The unit of a field ("rad/s"), nothing where it is not known; `field` as in its own message and without an index ("gyro_rad").
+/// The unit of a field ("rad/s"), nothing where it is not known; `field` as in its own message and
+/// without an index ("gyro_rad").
 std::optional<std::string_view> px4_unit(std::string_view message, std::string_view field);
 
 /// Is this a message that a sensor's driver, or what merges several, writes?

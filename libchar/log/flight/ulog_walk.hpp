@@ -1,5 +1,6 @@
 #pragma once
-// The messages of a ULog file one after the other: framing, appended stretches, and what to do where bytes are damaged or missing.
+// The messages of a ULog file one after the other: framing, appended stretches, and what to do
+// where bytes are damaged or missing.
 
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +33,8 @@ struct UlogStretch {
 
 class UlogWalk {
  public:
-  /// `sizes` is looked at while messages are read: entries are added as subscriptions come. Damage is counted in `losses`.
+  /// `sizes` is looked at while messages are read: entries are added as subscriptions come. Damage
+  /// is counted in `losses`.
   UlogWalk(const BinaryFile& file,
            std::size_t block_bytes,
            std::vector<UlogStretch> stretches,

@@ -1,6 +1,7 @@
 #pragma once
 // Messages of a bag of ROS 1 in the order in which they stand there, and what its index says of them.
-// Source: ROS wiki "Bags/Format/2.0": records of a header (u32 length, then fields u32 length "name=value") and data (u32 length).
+// Source: ROS wiki "Bags/Format/2.0": records of a header (u32 length, then fields u32 length
+// "name=value") and data (u32 length).
 
 #include <cstdint>
 #include <map>

@@ -1,6 +1,7 @@
 #pragma once
-// Topics of files whose messages stand in chunks: MCAP and bags. What is common once their records can be read: counts and first
-// messages with or without an index, chunks that need not be looked into, and what is missing at the end.
+// Topics of files whose messages stand in chunks: MCAP and bags. What is common once their records
+// can be read: counts and first messages with or without an index, chunks that need not be looked
+// into, and what is missing at the end.
 
 #include <cstdint>
 #include <map>
@@ -24,7 +25,8 @@ class MessageScan {
   virtual void begin_at(std::uint64_t at) = 0;
   /// Ends behind the record at which it was told to begin: for a look at a single chunk.
   virtual void stop_behind_chunk() = 0;
-  /// Only messages of these streams (all by default); chunks at the bytes of `skip`, which is sorted, are not looked into.
+  /// Only messages of these streams (all by default); chunks at the bytes of `skip`, which is
+  /// sorted, are not looked into.
   virtual void only(std::vector<bool> streams, std::vector<std::uint64_t> skip) = 0;
   /// The next message and its stream, false at the end.
   virtual bool next(RawMessage& message, StreamId& stream, Warnings& warnings) = 0;
@@ -32,8 +34,8 @@ class MessageScan {
   virtual std::uint64_t at() const = 0;
 };
 
-/// Counts the end of a file of `size` bytes that was never written, or copied, to its end: `inside` says of what ("inside a chunk",
-/// "without its index"), which begins at byte `at`.
+/// Counts the end of a file of `size` bytes that was never written, or copied, to its end: `inside`
+/// says of what ("inside a chunk", "without its index"), which begins at byte `at`.
 void add_cut_end(Warnings& warnings, std::uint64_t size, std::string_view inside, std::uint64_t at);
 
 struct ChunkPlace {
@@ -62,7 +64,8 @@ class ChunkedTopics : public MessageTopics {
   virtual const MessageScan& scan() const = 0;
   virtual std::uint64_t first_record() const = 0;
 
-  /// What the file's index says; then `find_examples`. Without one `count_messages`, which goes through everything once.
+  /// What the file's index says; then `find_examples`. Without one `count_messages`, which goes
+  /// through everything once.
   std::vector<ChunkPlace>& chunks() { return chunks_; }
   std::map<StreamId, StreamCount>& counts() { return counts_; }
   void find_examples();

@@ -10,14 +10,16 @@
 
 namespace libchar {
 
-/// "" when this build reads chunks packed with `method` ("", "none", "lz4", "zstd", "bz2"); else a sentence: built without, or unknown.
+/// "" when this build reads chunks packed with `method` ("", "none", "lz4", "zstd", "bz2"); else a
+/// sentence: built without, or unknown.
 std::string why_not_packed(std::string_view method);
 
 /// Most bytes of an unpacked chunk or message that are held in memory.
 inline constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 
-/// Unpacks `packed` into `to`, which grows with what comes out and never beyond `most`. Returns what is wrong ("" = the stream came to
-/// its end); `to` holds what came before that. `method` is one that `why_not_packed` has nothing against, and not "none".
+/// Unpacks `packed` into `to`, which grows with what comes out and never beyond `most`. Returns
+/// what is wrong ("" = the stream came to its end); `to` holds what came before that. `method` is
+/// one that `why_not_packed` has nothing against, and not "none".
 std::string unpack(std::string_view method,
                    std::span<const std::byte> packed,
                    std::uint64_t most,

@@ -18,7 +18,8 @@ using Sax = nlohmann::json_sax<nlohmann::json>;
 
 constexpr std::size_t kDeepestJson = 32;
 
-// Calls `number` with the name and value of every number. Goes through the text once and keeps nothing but the way to where it is.
+// Calls `number` with the name and value of every number. Goes through the text once and keeps
+// nothing but the way to where it is.
 class NumberSax final : public Sax {
  public:
   using Number = std::function<void(const std::string& name, double value)>;

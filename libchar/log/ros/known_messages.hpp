@@ -1,6 +1,7 @@
 #pragma once
-// What is known of the common ROS types beyond their definition: units (REP-103 and the comments of the definitions), which of them
-// sensors write, which are no rows of numbers, and the definitions themselves, for logs that do not carry them (rosbag2 before Iron).
+// What is known of the common ROS types beyond their definition: units (REP-103 and the comments of
+// the definitions), which of them sensors write, which are no rows of numbers, and the definitions
+// themselves, for logs that do not carry them (rosbag2 before Iron).
 
 #include <string>
 #include <string_view>
@@ -24,8 +25,8 @@ bool sensor_type(std::string_view type);
 /// Why nothing of this type is read ("images"); "" when it may be.
 std::string_view no_numbers_of(std::string_view type);
 
-/// The definitions of common types that a log may lack: `type` and what it is made of, as many versions as there have been, the newest
-/// first. Empty when it is not known.
+/// The definitions of common types that a log may lack: `type` and what it is made of, as many
+/// versions as there have been, the newest first. Empty when it is not known.
 std::vector<MessageTypes> known_definitions(std::string_view type);
 
 /// Adds what is known of types that `types` uses and has not.

@@ -1,5 +1,6 @@
 #pragma once
-// Records of MCAP files. Source: mcap.dev/spec: u8 opcode, u64 length, content; integers little endian, texts with a u32 length in front.
+// Records of MCAP files. Source: mcap.dev/spec: u8 opcode, u64 length, content; integers little
+// endian, texts with a u32 length in front.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
-// Definitions of ROS messages as logs carry them: the fields of a type in their order, and of every type that it is made of.
-// Source: ROS wiki "msg" (ROS 1), docs.ros.org "Interfaces" (ROS 2), MCAP's registry "ros1msg" and "ros2msg" (several types in one
-// text, parted by lines of 80 "=").
+// Definitions of ROS messages as logs carry them: the fields of a type in their order, and of every
+// type that it is made of. Source: ROS wiki "msg" (ROS 1), docs.ros.org "Interfaces" (ROS 2),
+// MCAP's registry "ros1msg" and "ros2msg" (several types in one text, parted by lines of 80 "=").
 
 #include <cstddef>
 #include <cstdint>
@@ -54,8 +54,9 @@ using MessageTypes = std::map<std::string, MessageType, std::less<>>;
 /// "sensor_msgs/Imu" for "sensor_msgs/msg/Imu" and for itself.
 std::string plain_type_name(std::string_view type);
 
-/// Adds `type` and the types behind it in `text` to `types`; those that are there already stay. Returns what is wrong with the
-/// text, "" when nothing is. `ros1`: time and duration are those of ROS 1.
+/// Adds `type` and the types behind it in `text` to `types`; those that are there already stay.
+/// Returns what is wrong with the text, "" when nothing is. `ros1`: time and duration are those of
+/// ROS 1.
 std::string add_message_types(std::string_view type,
                               std::string_view text,
                               bool ros1,

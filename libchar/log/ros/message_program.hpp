@@ -1,8 +1,9 @@
 #pragma once
-// Numbers out of serialized ROS messages. A type becomes a short list of steps: stretches of fixed size, in which the offset of every
-// number that is wanted is known beforehand, and between them what has a length of its own (texts, arrays).
-// Sources: ROS wiki "Connection header" and "msg" (ROS 1: packed, little endian); OMG DDS-XTYPES 1.3, 7.4 (CDR: 4 bytes of encapsulation,
-// values aligned to their size from the byte behind it; at most to 8, in version 2 to 4).
+// Numbers out of serialized ROS messages. A type becomes a short list of steps: stretches of fixed
+// size, in which the offset of every number that is wanted is known beforehand, and between them
+// what has a length of its own (texts, arrays). Sources: ROS wiki "Connection header" and "msg"
+// (ROS 1: packed, little endian); OMG DDS-XTYPES 1.3, 7.4 (CDR: 4 bytes of encapsulation, values
+// aligned to their size from the byte behind it; at most to 8, in version 2 to 4).
 
 #include <array>
 #include <cstddef>
@@ -96,8 +97,9 @@ inline constexpr std::size_t kMostNumbers = 4096;  // of a topic
 /// What came of a message.
 enum class Decoded : std::uint8_t { well, misfit, other_length };
 
-/// Takes the numbers of `message` into `row` by their slots (NaN where an array is shorter), the stamp into `stamp` in ns.
-/// misfit: the bytes are not those of the type. other_length: they are, but an array is longer or shorter than in the example.
+/// Takes the numbers of `message` into `row` by their slots (NaN where an array is shorter), the
+/// stamp into `stamp` in ns. misfit: the bytes are not those of the type. other_length: they are,
+/// but an array is longer or shorter than in the example.
 Decoded run_program(const MessageProgram& program,
                     std::span<const std::byte> message,
                     std::span<double> row,

@@ -23,8 +23,8 @@ struct RawTopic {
   double rate_hz = 0;        ///< where it is known better than by these
 };
 
-/// Adds `topic` to `topics`, to one of the same name and type where there is one; returns its place. Of one name with another type
-/// the second is called "NAME (TYPE)".
+/// Adds `topic` to `topics`, to one of the same name and type where there is one; returns its
+/// place. Of one name with another type the second is called "NAME (TYPE)".
 std::size_t merge_topic(std::vector<RawTopic>& topics, RawTopic topic);
 
 struct RawMessage {

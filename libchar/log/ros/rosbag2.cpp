@@ -1,5 +1,5 @@
-// Recordings of rosbag2 in several parts: a folder whose metadata.yaml lists files of MCAP or SQLite, read as one log in that order.
-// Source: ros2/rosbag2, rosbag2_storage (metadata_io).
+// Recordings of rosbag2 in several parts: a folder whose metadata.yaml lists files of MCAP or
+// SQLite, read as one log in that order. Source: ros2/rosbag2, rosbag2_storage (metadata_io).
 
 #include <fmt/format.h>
 
@@ -216,7 +216,8 @@ class Rosbag2Reader final : public TopicReader {
   }
 
   void begin_part(const Part& part, std::size_t topic, std::optional<std::size_t> time) {
-    // The stamps are those of the first part: a driver that leaves them 0 in one part has them in none, or the rows would jump.
+    // The stamps are those of the first part: a driver that leaves them 0 in one part has them in
+    // none, or the rows would jump.
     ReadOptions options = options_;
     const std::string& stamps = merged_[topic_].stamps;
     if (options.time_source == "auto" && part.stamps[topic] != stamps)

@@ -1,6 +1,6 @@
 #pragma once
-// SQLite reading one file and nothing else: no locks, no journals, nothing beside it is looked at, and of a file that was cut only pages
-// that are whole.
+// SQLite reading one file and nothing else: no locks, no journals, nothing beside it is looked at,
+// and of a file that was cut only pages that are whole.
 
 #include <string>
 

@@ -1,4 +1,5 @@
-// Days by std::chrono's proleptic Gregorian calendar; the forms are those of ISO 8601:2004 (4.2, 4.3) and of common exporters.
+// Days by std::chrono's proleptic Gregorian calendar; the forms are those of ISO 8601:2004 (4.2,
+// 4.3) and of common exporters.
 
 #include "libchar/log/time/calendar.hpp"
 

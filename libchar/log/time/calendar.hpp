@@ -1,6 +1,7 @@
 #pragma once
-// Dates and clock times as they are written in logs, to whole nanoseconds: ISO 8601 and what spreadsheets, data loggers and
-// terminals write. Days are those of the Gregorian calendar, counted from 1970-01-01.
+// Dates and clock times as they are written in logs, to whole nanoseconds: ISO 8601 and what
+// spreadsheets, data loggers and terminals write. Days are those of the Gregorian calendar, counted
+// from 1970-01-01.
 
 #include <cstdint>
 #include <optional>
@@ -22,9 +23,9 @@ struct CalendarStamp {
   int first = 0, second = 0;  ///< of a date whose order is not said
 };
 
-/// The whole of `text` as "2024-05-01T12:00:00.123456789+02:00", "01.05.2024 12:00:00", "5/1/24 3:04 PM", "01-May-2024 12:00",
-/// "20240501T120000Z", a date alone or a clock time alone. Fractions are rounded to the nanosecond. Nothing when it is none of
-/// these, or no day of the calendar.
+/// The whole of `text` as "2024-05-01T12:00:00.123456789+02:00", "01.05.2024 12:00:00", "5/1/24
+/// 3:04 PM", "01-May-2024 12:00", "20240501T120000Z", a date alone or a clock time alone. Fractions
+/// are rounded to the nanosecond. Nothing when it is none of these, or no day of the calendar.
 std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order);
 
 /// How the dates of a log are written.

@@ -1,11 +1,12 @@
-// Exact stamps of which rows are missing at random: all steps are whole multiples of the least one, and of 1, 2, 3… times it there are as
-// many as where each row is missing with one probability p, (1 - p) p^(m-1). That lattice is the sampling, however many are missing.
-// Else two estimates of the sampling interval: the common step (the median of the first differences),
-// right in a log with gaps, and span / (rows - 1), right wherever each row is a sample. Where they
-// differ by more than 2 % one of three things explains it, or the log is refused:
+// Exact stamps of which rows are missing at random: all steps are whole multiples of the least one,
+// and of 1, 2, 3… times it there are as many as where each row is missing with one probability p,
+// (1 - p) p^(m-1). That lattice is the sampling, however many are missing. Else two estimates of
+// the sampling interval: the common step (the median of the first differences), right in a log with
+// gaps, and span / (rows - 1), right wherever each row is a sample. Where they differ by more than
+// 2 % one of three things explains it, or the log is refused:
 //   coarse   all steps are multiples of the clock's step q, and every stamp stands within
-//            a band of 1.5 q (2 q in longer logs) about one line: rounding moves a stamp by at most q, while rows missing
-//            at random lead away from every line like a random walk
+//            a band of 1.5 q (2 q in longer logs) about one line: rounding moves a stamp by at most
+//            q, while rows missing at random lead away from every line like a random walk
 //   packets  most of the samples would be missing, again and again after at most 40 rows
 //   gaps     the longer steps are few, or multiples of the common step
 #include "libchar/log/time/first_interval.hpp"

@@ -2,8 +2,8 @@
 // From rows with stamps to samples on a uniform grid, streaming: missing samples are put in as NaN
 // (never interpolated), doubled and backward rows are dropped, rollovers are unwrapped, and
 // everything is counted.
-// The interval comes from first_interval.hpp, the rate from stamp_sketch.hpp; what becomes of a stamp that does not fit is decided in
-// time_repairs.cpp.
+// The interval comes from first_interval.hpp, the rate from stamp_sketch.hpp; what becomes of a
+// stamp that does not fit is decided in time_repairs.cpp.
 
 #include <cstdint>
 #include <deque>
@@ -73,7 +73,8 @@ class TimeGrid {
   bool take_one_by_one(
       Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
   void without_stamps(Pending& front);
-  /// The stamp, when it and its distance from the first leave room for every sum and difference in 64 bits. Throws Error(input) else.
+  /// The stamp, when it and its distance from the first leave room for every sum and difference in
+  /// 64 bits. Throws Error(input) else.
   std::int64_t checked(const Pending& front, std::size_t row, std::int64_t stamp) const;
   enum class Verdict { keep, drop };
   Verdict decide(const Pending& front, std::size_t row, std::int64_t& stamp, std::size_t ahead);

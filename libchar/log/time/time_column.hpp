@@ -1,7 +1,8 @@
 #pragma once
-// Which column of a table is the time, and in which unit: one rule for all formats. A name says time ("t", "elapsed", "time_us"),
-// a unit stands in brackets, behind '_' or apart; what neither says is guessed from the size and the step of the first stamps, and
-// every guess is put down as one.
+// Which column of a table is the time, and in which unit: one rule for all formats. A name says
+// time ("t", "elapsed", "time_us"), a unit stands in brackets, behind '_' or apart; what neither
+// says is guessed from the size and the step of the first stamps, and every guess is put down as
+// one.
 
 #include <cstddef>
 #include <cstdint>
@@ -44,9 +45,11 @@ struct TableFront {
 /// Does a column of this name hold stamps ("t", "time_us", "Time (s)")?
 bool called_time(const std::string& name);
 
-/// The column that options.time_column names (by name or position c0, c1… among all columns), or that says time by its name, its
-/// unit or its dates or, without names, by how it rises. Of several those that rise, a device's clock before others, the steadier before
-/// others; the choice is a guess that names them all. Nothing when there is none. Throws Error(usage) for a name that is not there.
+/// The column that options.time_column names (by name or position c0, c1… among all columns), or
+/// that says time by its name, its unit or its dates or, without names, by how it rises. Of several
+/// those that rise, a device's clock before others, the steadier before others; the choice is a
+/// guess that names them all. Nothing when there is none. Throws Error(usage) for a name that is
+/// not there.
 std::optional<std::size_t> find_time_column(const TableFront& table,
                                             const ReadOptions& options,
                                             LogInfo& info);
@@ -54,9 +57,9 @@ std::optional<std::size_t> find_time_column(const TableFront& table,
 /// The usual distance of two values, 0 for fewer.
 double usual_step(const std::vector<double>& values);
 
-/// Nanoseconds in one unit of that column; the unit's name and whether it is a guess go to info.time. A guess has to agree with a
-/// rate that the file states (Error(input) else, with both), a unit that is said gives a warning.
-/// Throws Error(usage) for an unknown options.time_unit.
+/// Nanoseconds in one unit of that column; the unit's name and whether it is a guess go to
+/// info.time. A guess has to agree with a rate that the file states (Error(input) else, with both),
+/// a unit that is said gives a warning. Throws Error(usage) for an unknown options.time_unit.
 std::int64_t find_time_unit(const TableFront& table,
                             std::size_t column,
                             const ReadOptions& options,

@@ -17,8 +17,8 @@ struct TimeName {
   bool date = false;    ///< a word for dates and clocks: time only where the values are such
 };
 
-/// What the name of a column, without its unit, says of time; nothing when it says something else. In capitals or not, in the
-/// languages that spreadsheets speak.
+/// What the name of a column, without its unit, says of time; nothing when it says something else.
+/// In capitals or not, in the languages that spreadsheets speak.
 std::optional<TimeName> time_name(std::string_view stem);
 
 }  // namespace libchar

@@ -53,9 +53,10 @@ bool whole_thousands(const std::vector<double>& values) {
       values.begin(), values.end(), [](double x) { return std::fmod(x, 1000) == 0; });
 }
 
-// Time since 1970 betrays its unit by its size, where that is a date from 1990 to 2100; a time since power-on by its step, as sensors
-// run at 0.5 Hz to 50 kHz. A phone that has run for half an hour counts as many nanoseconds as a date has milliseconds: then the
-// step decides, unless all are whole seconds.
+// Time since 1970 betrays its unit by its size, where that is a date from 1990 to 2100; a time
+// since power-on by its step, as sensors run at 0.5 Hz to 50 kHz. A phone that has run for half an
+// hour counts as many nanoseconds as a date has milliseconds: then the step decides, unless all are
+// whole seconds.
 std::int64_t guess_unit(const FirstValues& first) {
   constexpr double kFirstDate = 6.3e8, kLastDate = 4.1e9;  // in seconds
   const std::vector<double>& values = first.values;

@@ -73,7 +73,8 @@ std::set<std::size_t> topics_of(const std::vector<LogTopic>& topics, const std::
   return found;
 }
 
-// The fields that a word means in one topic, by their own names; the word itself when that is for the reader to say (c0, a slip).
+// The fields that a word means in one topic, by their own names; the word itself when that is for
+// the reader to say (c0, a slip).
 std::vector<std::string> fields_of(const LogTopic& topic, const std::string& word) {
   std::vector<std::string> fields;
   for (const Channel& field : topic.fields)

@@ -17,14 +17,15 @@ struct TopicChoice {
   std::string guess;                  ///< why this one was taken, when nobody said so
 };
 
-/// Nothing when there are several and nobody said which: `options` name none. Throws Error(usage) for a topic or a channel that is
-/// not there, for channels of several topics (they have several clocks), and for a topic without a number.
+/// Nothing when there are several and nobody said which: `options` name none. Throws Error(usage)
+/// for a topic or a channel that is not there, for channels of several topics (they have several
+/// clocks), and for a topic without a number.
 std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
                                         const ReadOptions& options,
                                         const std::string& file);
 
-/// The sentence for a log whose topic has to be chosen first, Error(usage), or that has none which can be read, Error(input): what it
-/// lost (`losses`) may be the reason.
+/// The sentence for a log whose topic has to be chosen first, Error(usage), or that has none which
+/// can be read, Error(input): what it lost (`losses`) may be the reason.
 [[noreturn]] void refuse_without_topic(const std::vector<LogTopic>& topics,
                                        const std::string& file,
                                        const Warnings& losses = {});

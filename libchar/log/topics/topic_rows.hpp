@@ -10,7 +10,8 @@
 
 namespace libchar {
 
-/// The rows of the topic and channels that `options` choose. Throws Error(usage) when they choose none or several (E0425).
+/// The rows of the topic and channels that `options` choose. Throws Error(usage) when they choose
+/// none or several (E0425).
 std::unique_ptr<RowSource> open_topic_rows(std::unique_ptr<TopicReader> reader,
                                            const std::string& path,
                                            std::string_view format,

@@ -1,6 +1,6 @@
 #pragma once
-// One noise term of a model file: a bare number, or value, unit, interval and status; converted to the two-sided density in
-// the channel's unit.
+// One noise term of a model file: a bare number, or value, unit, interval and status; converted to
+// the two-sided density in the channel's unit.
 
 #include <vector>
 

@@ -286,8 +286,10 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
   out.learning_s = learning_s_ - ahead_s_;
   if (frame_->heap != nullptr)
     out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(peak_, 0));
-  out.weights = weights();
-  out.variances = variances();
+  if (const auto found = weights())
+    for (const auto& column : found->colwise())
+      out.weights.emplace_back(column.begin(), column.end());
+  if (const auto found = variances()) out.variances.assign(found->begin(), found->end());
   out.weight_track = thinned(track_times_, weight_samples_, kTrackBins);
   out.variance_track = thinned(track_times_, variance_samples_, kTrackBins);
   out.faults = faults();

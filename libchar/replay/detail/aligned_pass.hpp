@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "libchar/core/progress.hpp"
-#include "libchar/fusion/alignment.hpp"
+#include "libchar/fusion/aligner.hpp"
 
 namespace libchar {
 

@@ -9,7 +9,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/fusion/alignment_learning.hpp"
-#include "libchar/fusion/error_budget.hpp"
+#include "libchar/fusion/budget_meter.hpp"
 #include "libchar/replay/detail/instants.hpp"
 
 namespace libchar {

@@ -1,10 +1,12 @@
-// Butterworth filters of second order by the bilinear transform with the corner prewarped (Oppenheim & Schafer, Discrete-Time
+// Butterworth filters of second order by the bilinear transform with the corner prewarped
+// (Oppenheim & Schafer, Discrete-Time
 // Signal Processing, 7.1):   K = tan(pi f / rate),   D = 1 + sqrt2 K + K^2
 //   low-pass    b = (K^2, 2 K^2, K^2) / D     high-pass   b = (1, -2, 1) / D
 //   both        a = (1, 2 (K^2 - 1), 1 - sqrt2 K + K^2) / D
-// run in the transposed direct form II. A linear filter of all channels alike leaves the difference of sensor and reference what it
-// would be if the difference were filtered. A step decays as exp(-2 pi f t / sqrt2): below a thousandth after 1.65 / f.
-// Noise gain: (1/pi) times the integral of |H|^2 from 0 to pi, by the midpoint rule in log frequency.
+// run in the transposed direct form II. A linear filter of all channels alike leaves the difference
+// of sensor and reference what it would be if the difference were filtered. A step decays as exp(-2
+// pi f t / sqrt2): below a thousandth after 1.65 / f. Noise gain: (1/pi) times the integral of
+// |H|^2 from 0 to pi, by the midpoint rule in log frequency.
 #include "libchar/replay/detail/band_filter.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // d_k = x_ref,k - sum_i h_i y_i,k / sum_i h_i^2 over the sensors that are there;   offset = mean of d
-// Of a tilt d_k = wrapped(angle_ref,k - atan2(x_k, z_k)), about the first of them. The interval is that of the mean of at most
-// kMostBatches batch means: what is slower than a batch is all in them.
+// Of a tilt d_k = wrapped(angle_ref,k - atan2(x_k, z_k)), about the first of them. The interval is
+// that of the mean of at most kMostBatches batch means: what is slower than a batch is all in them.
 #include "libchar/replay/detail/find_offset.hpp"
 
 #include <fmt/format.h>

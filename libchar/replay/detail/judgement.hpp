@@ -30,7 +30,8 @@ void judge_tracking(AlgorithmResult& algorithm,
 /// Which known faults were found, and when.
 void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result);
 
-/// The best method and who cannot be told from it. `meters`: the errors that `rmse` came from, for each algorithm, empty where there are none.
+/// The best method and who cannot be told from it. `meters`: the errors that `rmse` came from, for
+/// each algorithm, empty where there are none.
 void judge_best(ReplayResult& result,
                 const std::vector<Meters>& meters,
                 const ScoreOptions& scoring);

@@ -1,9 +1,11 @@
-// The variance-time plot (J. Beran, Statistics for Long-Memory Processes, 1994, 4.4). Means of k batches of m of the n values scatter by
+// The variance-time plot (J. Beran, Statistics for Long-Memory Processes, 1994, 4.4). Means of k
+// batches of m of the n values scatter by
 //   V_k = g(m) - g(n),   g(m) the variance of a mean of m values,
-// for the mean of all is taken out of them. g is (m/n)^-1 times a constant where batches are longer than the correlation, and falls
-// slower where it never ends: g(m) = a (m/n)^-1 + b (m/n)^-1/4, a and b >= 0, fitted to V_256 … V_8, each a gamma variable of k - 1
-// degrees of freedom. What is wanted is g(n) = a + b: no batch has seen it, where b > 0.
-// The second term is left out where the batches do not ask for it, first without the shortest, which are correlated soonest.
+// for the mean of all is taken out of them. g is (m/n)^-1 times a constant where batches are longer
+// than the correlation, and falls slower where it never ends: g(m) = a (m/n)^-1 + b (m/n)^-1/4, a
+// and b >= 0, fitted to V_256 … V_8, each a gamma variable of k - 1 degrees of freedom. What is
+// wanted is g(n) = a + b: no batch has seen it, where b > 0. The second term is left out where the
+// batches do not ask for it, first without the shortest, which are correlated soonest.
 #include "libchar/replay/detail/mean_uncertainty.hpp"
 
 #include <algorithm>

@@ -15,8 +15,8 @@ struct MeanUncertainty {
 /// level: share of series of which the interval misses the mean.
 MeanUncertainty mean_uncertainty(std::span<const double> series, double level = 0.05);
 
-/// The slope of log Allan variance over log averaging time at the longest five octaves: -1 white, 0 flicker, 1 a walk, 2 a drift.
-/// NaN: fewer than 128 values.
+/// The slope of log Allan variance over log averaging time at the longest five octaves: -1 white, 0
+/// flicker, 1 a walk, 2 a drift. NaN: fewer than 128 values.
 double slow_slope(std::span<const double> series);
 
 }  // namespace libchar

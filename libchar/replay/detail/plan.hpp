@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/fusion/array.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/detail/blind_share.hpp"
 #include "libchar/replay/detail/instants.hpp"

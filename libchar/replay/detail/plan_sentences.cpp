@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libchar/core/decimal.hpp"
+#include "libchar/core/text.hpp"
 #include "libchar/replay/detail/plan.hpp"
 #include "libchar/replay/preparation_words.hpp"
 
@@ -31,9 +32,8 @@ std::string reading(const Scene& scene, const Instants& instants) {
                        source.samples,
                        significant(source.rate_hz, 6),
                        scene.simulate->seed);
-  return fmt::format("reads {} channel{} of {}: {} samples at {} Hz, {}",
-                     source.units.size() + source.reference_units.size(),
-                     source.units.size() + source.reference_units.size() == 1 ? "" : "s",
+  return fmt::format("reads {} of {}: {} samples at {} Hz, {}",
+                     plural(source.units.size() + source.reference_units.size(), "channel"),
                      source.logs[0].file,
                      source.samples,
                      significant(source.rate_hz, 6),

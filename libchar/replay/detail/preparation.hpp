@@ -1,6 +1,6 @@
 #pragma once
-// What is done to all sensors and the reference alike before anything is learnt or fused: a trend is taken out of each, and one
-// filter runs over all.
+// What is done to all sensors and the reference alike before anything is learnt or fused: a trend
+// is taken out of each, and one filter runs over all.
 
 #include <Eigen/Core>
 #include <cstdint>

@@ -17,7 +17,8 @@ class RestMeter {
   void push(const Eigen::MatrixXd& samples);
   std::vector<double> means() const;            ///< 0 without a sample
   std::vector<double> noise_variances() const;  ///< NaN without a difference
-  /// About the mean; NaN without two samples. Of filtered samples, which have no drift, and of which neighbours are alike.
+  /// About the mean; NaN without two samples. Of filtered samples, which have no drift, and of
+  /// which neighbours are alike.
   std::vector<double> variances() const;
 
  private:

@@ -1,6 +1,6 @@
 // Offsets and noise levels of the sensors, before anything is fused. A level is taken from the
-// scene's own figure, else from the sensor's model, else from the stretch at rest. Behind a filter the first two are multiplied by
-// what it leaves of white noise, the third is measured there.
+// scene's own figure, else from the sensor's model, else from the stretch at rest. Behind a filter
+// the first two are multiplied by what it leaves of white noise, the third is measured there.
 #include "libchar/replay/detail/sensor_knowledge.hpp"
 
 #include <algorithm>

@@ -84,19 +84,16 @@ void check_rows(const MapReader& top, const SensorIndex& index, const Scene& sce
     const std::vector<double>& h = scene.sensors[i].h;
     const std::string name = printable(scene.sensors[i].name, 40);
     if (h.size() != inputs)
-      refuse_scene_value(
-          "E0741",
-          top,
-          *index.places[i].node,
-          index.places[i].path,
-          fmt::format("the row h of sensor {} has {} weight{}, and there {} {} true input{}",
-                      name,
-                      h.size(),
-                      h.size() == 1 ? "" : "s",
-                      inputs == 1 ? "is" : "are",
-                      inputs,
-                      inputs == 1 ? "" : "s"),
-          "give h one weight a truth signal or reference channel");
+      refuse_scene_value("E0741",
+                         top,
+                         *index.places[i].node,
+                         index.places[i].path,
+                         fmt::format("the row h of sensor {} has {}, and there {} {}",
+                                     name,
+                                     plural(h.size(), "weight"),
+                                     inputs == 1 ? "is" : "are",
+                                     plural(inputs, "true input")),
+                         "give h one weight a truth signal or reference channel");
     const bool blind = std::all_of(h.begin(), h.end(), [](double w) { return w == 0; });
     if (blind && !scene.simulate)
       refuse_scene_value("E0741",

@@ -3,7 +3,8 @@
 //
 //   white         Q/sqrt(dt) w_t                     flicker   B (1 - z^-1)^(-1/2) w_t
 //   random walk   x_t = x_{t-1} + K sqrt(dt) w_t     quantization   Qz (w_t - w_{t-1})/dt
-//   ramp          R t                                Gauss-Markov   y_t = phi y_{t-1} + sigma sqrt(1 - phi^2) w_t, phi = exp(-dt/tau)
+//   ramp          R t
+//   Gauss-Markov  y_t = phi y_{t-1} + sigma sqrt(1 - phi^2) w_t, phi = exp(-dt/tau)
 //
 // Band limited: continuous white noise of two-sided density Q^2 behind a first-order low-pass of
 // corner f_c is an Ornstein-Uhlenbeck process of variance Q^2 pi f_c; its samples are exactly

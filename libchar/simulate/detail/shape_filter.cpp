@@ -1,7 +1,8 @@
 // y = h * u by overlap-save: blocks of n samples, of which the first taps - 1 are those of the block before.
-// boxcar: h = 1/m, m times; bartlett: its convolution with itself; measured: frequency sampling, h = inverse transform of the square
-// root of the ratio (zero phase, moved by half its length), under a Hann window, divided by its sum.
-// (Oppenheim & Schafer, Discrete-Time Signal Processing, 8.7.3 and 7.5.)
+// boxcar: h = 1/m, m times; bartlett: its convolution with itself; measured: frequency sampling, h
+// = inverse transform of the square root of the ratio (zero phase, moved by half its length), under
+// a Hann window, divided by its sum. (Oppenheim & Schafer, Discrete-Time Signal Processing, 8.7.3
+// and 7.5.)
 #include "libchar/simulate/detail/shape_filter.hpp"
 
 #include <algorithm>
@@ -17,7 +18,8 @@ namespace {
 
 constexpr std::size_t kMostTaps = std::size_t{1} << 16U;
 constexpr std::size_t kFewestTaps = 64;
-/// Of the lowest frequency of a measured shape: its bins are an eighth of an octave wide, and the window smears none into the next.
+/// Of the lowest frequency of a measured shape: its bins are an eighth of an octave wide, and the
+/// window smears none into the next.
 constexpr double kTapsPerPeriod = 96;
 
 std::size_t power_of_two(double at_least) {

@@ -10,14 +10,14 @@
 
 namespace libchar {
 
-/// Impulse response with the shape's gain, of unit sum; boxcar and bartlett exactly, a measured one to within the resolution of its
-/// lowest frequency (at most 2^16 taps).
+/// Impulse response with the shape's gain, of unit sum; boxcar and bartlett exactly, a measured one
+/// to within the resolution of its lowest frequency (at most 2^16 taps).
 std::vector<double> shape_taps(const NoiseShape& shape, double rate_hz);
 
 class ShapeFilter {
  public:
-  /// `source` adds the next samples to zeros. It is asked for one response's length before the first sample, so that the output is in
-  /// its steady state from the first sample on.
+  /// `source` adds the next samples to zeros. It is asked for one response's length before the
+  /// first sample, so that the output is in its steady state from the first sample on.
   ShapeFilter(const NoiseShape& shape,
               double rate_hz,
               std::function<void(std::span<double>)> source);

@@ -14,8 +14,9 @@ bool planner_is_broken = false;  // under the planner's mutex: who plans holds i
 
 }  // namespace
 
-// FFTW asserts that its planner gets memory, and an assertion that fails ends the process; this stands in its place. Nothing else of
-// FFTW asserts anything in a release build. What the planner held is lost, and half of it may be changed.
+// FFTW asserts that its planner gets memory, and an assertion that fails ends the process; this
+// stands in its place. Nothing else of FFTW asserts anything in a release build. What the planner
+// held is lost, and half of it may be changed.
 extern "C" void fftw_assertion_failed(const char*, int, const char*) {
   planner_is_broken = true;
   throw std::bad_alloc();
@@ -41,7 +42,8 @@ struct KeptPlan {
   Plan plan;
 };
 
-/// Those used last come first. Like the planner's own memory of plans it changes no result: of one length there is one plan.
+/// Those used last come first. Like the planner's own memory of plans it changes no result: of one
+/// length there is one plan.
 std::list<KeptPlan>& kept_plans() {
   static std::list<KeptPlan> kept;
   return kept;

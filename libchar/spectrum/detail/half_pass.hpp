@@ -1,6 +1,6 @@
 #pragma once
-// Everything after the first step of a pair's transform (half_segments.cpp has the equations): row by row into bins of both halves, of
-// the two segments that they end, and sums of their power.
+// Everything after the first step of a pair's transform (half_segments.cpp has the equations): row
+// by row into bins of both halves, of the two segments that they end, and sums of their power.
 
 #include <cstddef>
 
@@ -43,8 +43,8 @@ class Pass {
 
   std::size_t steps() const { return t_.n1 / 2 + 1; }
   void run() { run(0, steps()); }
-  /// Some of the steps. Several passes may share a pair's: `begin_at` the first of them, for all before the first `run`, for it reads
-  /// what a `run` of the steps before may write over.
+  /// Some of the steps. Several passes may share a pair's: `begin_at` the first of them, for all
+  /// before the first `run`, for it reads what a `run` of the steps before may write over.
   void begin_at(std::size_t step);
   void run(std::size_t from, std::size_t to);
 

@@ -104,7 +104,8 @@ RowTables::RowTables(std::size_t half)
     put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(n2)));
 }
 
-// Row r has every n1-th bin of its kind. Eight rows at a time, so that what is written next to each other is a line of the cache or two.
+// Row r has every n1-th bin of its kind. Eight rows at a time, so that what is written next to each
+// other is a line of the cache or two.
 void natural_order(const RowTables& tables,
                    const double* sums,
                    double top,

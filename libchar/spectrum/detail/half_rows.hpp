@@ -55,8 +55,9 @@ void natural_order(const RowTables& tables,
                    double top,
                    std::vector<double>& out);
 
-/// Rows of one kind of bins between the two steps of a transform: whole rows; or, where they stand in the place of the samples they are
-/// made of, every step's columns half in `low` and half in `high`.
+/// Rows of one kind of bins between the two steps of a transform: whole rows; or, where they stand
+/// in the place of the samples they are made of, every step's columns half in `low` and half in
+/// `high`.
 struct RowsBetween {
   double* low;
   double* high;       ///< none: whole rows
@@ -72,7 +73,8 @@ struct RowsBetween {
 class ColumnScratch {
  public:
   explicit ColumnScratch(const RowTables& tables);
-  /// Of a pair, the columns from `column` on: into rows of even and of odd bins. These may stand where the samples of the columns do.
+  /// Of a pair, the columns from `column` on: into rows of even and of odd bins. These may stand
+  /// where the samples of the columns do.
   void transform(const HalfPair& pair,
                  std::size_t column,
                  const RowsBetween& even,

@@ -1,6 +1,7 @@
 #pragma once
-// Welch's method by halves (half_segments.cpp has the equations) on a record that nobody needs any more: what the transforms write stands
-// in the place of the samples, as far as it fits, and all threads share a pair. The bits are those of HalfSegments.
+// Welch's method by halves (half_segments.cpp has the equations) on a record that nobody needs any
+// more: what the transforms write stands in the place of the samples, as far as it fits, and all
+// threads share a pair. The bits are those of HalfSegments.
 
 #include <cstddef>
 #include <span>
@@ -15,8 +16,9 @@ class HalvesInPlace {
   /// Of segments of 2 `half` samples that `HalfSegments::suits`.
   HalvesInPlace(std::size_t half, int threads);
 
-  /// Sums the power of all half-overlapping segments of a record, of at least one; it holds no samples afterwards. Says of each segment
-  /// whether it was used: those that touch a missing sample (NaN) are not.
+  /// Sums the power of all half-overlapping segments of a record, of at least one; it holds no
+  /// samples afterwards. Says of each segment whether it was used: those that touch a missing
+  /// sample (NaN) are not.
   std::vector<char> add_all(std::span<double> record);
   /// Bins 0 … half.
   std::vector<double> power() const;

@@ -67,15 +67,16 @@ class Average {
   double degrees_of_freedom(const std::vector<double>& window) const;
   /// What was found of a part of a record, without the samples at its ends.
   WelchSums sums() const;
-  /// The segments that straddle the end of the part so far, each used or not, and those of the part behind it. `power`: of the former.
+  /// The segments that straddle the end of the part so far, each used or not, and those of the part
+  /// behind it. `power`: of the former.
   void join(const std::vector<double>& power,
             std::span<const char> straddling,
             const WelchSums& later);
-  /// No window: the periodic Hann window, half overlapping. Throws Error(numeric) where the powers are no numbers, or too small for one
-  /// and the samples not constant.
+  /// No window: the periodic Hann window, half overlapping. Throws Error(numeric) where the powers
+  /// are no numbers, or too small for one and the samples not constant.
   Spectrum spectrum(const std::vector<double>& window, double rate_hz) const;
-  /// The same of a record that came piece by piece: Error(numeric) where no whole segment was in its `samples`, and a note where some
-  /// were dropped.
+  /// The same of a record that came piece by piece: Error(numeric) where no whole segment was in
+  /// its `samples`, and a note where some were dropped.
   Spectrum finish(const std::vector<double>& window, double rate_hz, std::uint64_t samples) const;
 
  private:

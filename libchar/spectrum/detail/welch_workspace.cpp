@@ -7,7 +7,8 @@ namespace libchar {
 
 namespace {
 
-// Halves from here on are of a record that has the memory for itself: 64 MB and more for each of seven arrays, wanted for its spectrum next.
+// Halves from here on are of a record that has the memory for itself: 64 MB and more for each of
+// seven arrays, wanted for its spectrum next.
 constexpr std::size_t kNotKept = std::size_t{1} << 23U;
 
 }  // namespace

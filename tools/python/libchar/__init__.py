@@ -5,17 +5,21 @@
     gyro = libchar.fit(log, channels=["gyro_z"])[0]   # N, B, K with 95 % intervals
     print(gyro.white_noise.value, gyro.white_noise.ci95, gyro.unit)
 
-Times are in seconds, frequencies in hertz, samples in the unit of their channel. Noise coefficients are roots of two-sided
-densities: N (white_noise) in U·√s, B (bias_instability) in U, K (random_walk) in U/√s; a data sheet's one-sided density is
-√2·N. Contiguous arrays of float64 are used as they are; any other array is copied once, with a CopyWarning.
-Work runs without the interpreter's lock, on all cores unless `threads` says otherwise.
+Times are in seconds, frequencies in hertz, samples in the unit of their channel. Noise coefficients are roots
+of two-sided densities: N (white_noise) in U·√s, B (bias_instability) in U, K (random_walk) in U/√s; a data
+sheet's one-sided density is √2·N. Contiguous arrays of float64 are used as they are; any other array is
+copied once, with a CopyWarning. Work runs without the interpreter's lock, on all cores unless `threads` says
+otherwise.
 """
 from ._libchar import build, version as _version
 from .errors import CopyWarning, Error, InputError, NumericError, UsageError
 from .functions import allan, characterize, fit, psd, read, replay, simulate, write
-from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, NoiseFit, NoiseTerm, Recording, ReplayResult, Spectrum)
+from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, NoiseFit, NoiseTerm, Recording,
+                      ReplayResult, Spectrum)
 
 __version__ = _version()
-__all__ = ["read", "write", "allan", "psd", "fit", "characterize", "simulate", "replay", "Recording", "AllanCurve", "Spectrum", "NoiseTerm",
-           "NoiseFit", "ChannelReport", "Characterization", "Algorithm", "ReplayResult", "Error", "UsageError", "InputError",
+__all__ = ["read", "write", "allan", "psd", "fit", "characterize", "simulate", "replay", "Recording", "AllanCurve",
+           "Spectrum", "NoiseTerm",
+           "NoiseFit", "ChannelReport", "Characterization", "Algorithm", "ReplayResult", "Error", "UsageError",
+           "InputError",
            "NumericError", "CopyWarning", "build"]

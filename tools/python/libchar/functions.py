@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 from . import _libchar
 from .errors import CopyWarning, NumericError, UsageError
-from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, NoiseFit, NoiseTerm, Recording, ReplayResult, Spectrum)
+from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, NoiseFit, NoiseTerm, Recording,
+                      ReplayResult, Spectrum)
 
 #: A path of a log, a recording that was read, an array (one channel, or a column a channel), or arrays by their names.
 Source = Union[str, "os.PathLike[str]", Recording, npt.ArrayLike, Mapping[str, npt.ArrayLike]]
@@ -20,7 +21,8 @@ Names = Optional[Sequence[str]]
 
 _TERMS = ("white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp")
 # What is only known of a file is refused for samples in memory.
-_OF_FILES = ("from_s", "to_s", "time_column", "time_unit", "format", "delimiter", "decimal", "header", "encoding", "skip_rows", "topic", "time_source")
+_OF_FILES = ("from_s", "to_s", "time_column", "time_unit", "format", "delimiter", "decimal", "header", "encoding",
+             "skip_rows", "topic", "time_source")
 
 
 def _column(values: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
@@ -32,7 +34,8 @@ def _column(values: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
     out = np.ascontiguousarray(given, dtype=np.float64)
     if out is not given and not np.shares_memory(out, given):
         what = "not contiguous" if given.dtype == np.float64 else f"of {given.dtype}"
-        warnings.warn(f"{name}: {given.size} samples were copied, because the array is {what}", CopyWarning, stacklevel=4)
+        warnings.warn(f"{name}: {given.size} samples were copied, because the array is {what}", CopyWarning,
+                      stacklevel=4)
     return out
 
 
@@ -49,7 +52,8 @@ def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Name
             array = np.asarray(source)
             table = [array] if array.ndim < 2 else list(np.moveaxis(array, -1, 0)) if array.ndim == 2 else []
             if not table:
-                raise UsageError(f"an array of one or two dimensions was expected, this has {array.ndim}", "E0208", "samples")
+                raise UsageError(f"an array of one or two dimensions was expected, this has {array.ndim}", "E0208",
+                                 "samples")
             found = {f"c{k}": column for k, column in enumerate(table)}
         unit_of = dict.fromkeys(found, "")
     if channels is not None:
@@ -66,7 +70,8 @@ def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Name
     said = own if units is None else list(units) * (len(found) if len(units) == 1 else 1)
     if not rate_hz:
         raise UsageError("samples in memory need their sampling rate", "E0208", "rate_hz", "rate_hz=200")
-    return {"names": shown, "units": said, "samples": [_column(values, name) for name, values in zip(shown, found.values())],
+    return {"names": shown, "units": said,
+            "samples": [_column(values, name) for name, values in zip(shown, found.values())],
             "rate_hz": float(rate_hz), "file": source.file if isinstance(source, Recording) else "memory"}
 
 
@@ -99,14 +104,16 @@ def _curve(channel: dict[str, Any], kind: str) -> AllanCurve:
     def array(key: str) -> npt.NDArray[np.float64]:
         return np.array([np.nan if value is None else value for value in channel[key]], dtype=np.float64)
 
-    ci95 = np.array([(np.nan, np.nan) if pair is None else pair for pair in channel["ci95"]], dtype=np.float64).reshape(-1, 2)
+    ci95 = np.array([(np.nan, np.nan) if pair is None else pair for pair in channel["ci95"]],
+                    dtype=np.float64).reshape(-1, 2)
     return AllanCurve(channel["name"], channel["unit"], kind, array("tau_s"), array("deviation"), ci95, array("edf"),
                       np.array(channel["terms"], dtype=np.int64), {"type": kind, **channel})
 
 
 def _term(term: dict[str, Any]) -> NoiseTerm:
     ci95 = term.get("ci95")
-    return NoiseTerm(term.get("value"), (ci95[0], ci95[1]) if ci95 else None, term["status"], term.get("upper95"), term.get("unit") or "", term)
+    return NoiseTerm(term.get("value"), (ci95[0], ci95[1]) if ci95 else None, term["status"], term.get("upper95"),
+                     term.get("unit") or "", term)
 
 
 def _fit(channel: dict[str, Any]) -> NoiseFit:
@@ -122,7 +129,8 @@ def _refuse_nothing(kept: _libchar.Characterized, what: str, found: Sequence[Any
 
 
 def _recording(made: Mapping[str, Any]) -> Recording:
-    return Recording(made["names"], made["units"], made["samples"], made["rate_hz"], made["file"], made["start_ns"], made["warnings"],
+    return Recording(made["names"], made["units"], made["samples"], made["rate_hz"], made["file"], made["start_ns"],
+                     made["warnings"],
                      made["info"])
 
 
@@ -140,21 +148,27 @@ def read(path: Union[str, "os.PathLike[str]"], *, channels: Names = None, names:
     from_s, to_s first instant to use and first not to use, in s after the first stamp
     rate_hz      sampling rate in Hz, of a log without stamps and without a rate
     topic        of a log that holds several streams, the one to read; time_source: whose stamps count
-    time_column, time_unit, format, delimiter, decimal, header, encoding, skip_rows: as the options of the program of these names
+    time_column, time_unit, format, delimiter, decimal, header, encoding, skip_rows: as the options of the
+    program of these names
 
     Raises InputError with file, line and column, UsageError for an option that does not fit the file.
     """
-    return _recording(_libchar.read(os.fspath(path), _reading({k: v for k, v in locals().items() if k != "path"}, False)))
+    return _recording(_libchar.read(os.fspath(path),
+                                    _reading({k: v for k, v in locals().items() if k != "path"}, False)))
 
 
-def write(path: Union[str, "os.PathLike[str]"], samples: Source, *, rate_hz: Optional[float] = None, names: Names = None,
+def write(path: Union[str, "os.PathLike[str]"], samples: Source, *, rate_hz: Optional[float] = None,
+          names: Names = None,
           units: Names = None, overwrite: bool = False) -> None:
-    """Writes samples as a log; the suffix says the format (.csv, .npy, raw with a sidecar). What is written reads back to the same bits."""
+    """Writes samples as a log; the suffix says the format (.csv, .npy, raw with a sidecar). What is written
+    reads back to the same bits."""
     _libchar.write_recording(os.fspath(path), _columns(samples, rate_hz, names, units, None), overwrite)
 
 
-def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev", taus: Union[str, Sequence[float]] = "octave",
-          tau_min_s: Optional[float] = None, tau_max_s: Optional[float] = None, full_overlap: bool = False, data: str = "rate",
+def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev",
+          taus: Union[str, Sequence[float]] = "octave",
+          tau_min_s: Optional[float] = None, tau_max_s: Optional[float] = None, full_overlap: bool = False,
+          data: str = "rate",
           nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
           threads: Optional[int] = None) -> list[AllanCurve]:
     """Deviations of the Allan family, a curve a channel, with chi-square intervals (`sensorchar allan`).
@@ -168,17 +182,21 @@ def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev
     Deviations are in the unit of the channel. Raises NumericError when no channel has enough samples.
     """
     reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
-    options = {"only": "allan", "type": type, "taus": taus if isinstance(taus, str) else [float(t) for t in taus], "tau_min_s": tau_min_s,
-               "tau_max_s": tau_max_s, "full_overlap": full_overlap, "data": data, "nominal_frequency": nominal_frequency}
+    options = {"only": "allan", "type": type, "taus": taus if isinstance(taus, str) else [float(t) for t in taus],
+               "tau_min_s": tau_min_s,
+               "tau_max_s": tau_max_s, "full_overlap": full_overlap, "data": data,
+               "nominal_frequency": nominal_frequency}
     kept = _characterized(source, reading, options)
     document = kept.allan()
     _refuse_nothing(kept, "an Allan deviation", document["channels"])
     return [_curve(channel, channel.get("type", document.get("type", type))) for channel in document["channels"]]
 
 
-def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[int] = None, segment_s: Optional[float] = None,
+def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[int] = None,
+        segment_s: Optional[float] = None,
         overlap: float = 0.5, window: str = "hann", detrend: str = "constant", sides: str = "one", scaling: str = "psd",
-        bins: int = 0, channels: Names = None, names: Names = None, units: Names = None, threads: Optional[int] = None) -> list[Spectrum]:
+        bins: int = 0, channels: Names = None, names: Names = None, units: Names = None,
+        threads: Optional[int] = None) -> list[Spectrum]:
     """Power spectra by Welch's method, one a channel (`sensorchar psd`).
 
     segment, segment_s  samples of a segment, or its length in s; None: a quarter of the record
@@ -188,20 +206,23 @@ def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[in
     bins                averaged into at most so many on a logarithmic axis of frequency; 0: not averaged
     """
     reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
-    options = {"segment": segment, "segment_s": segment_s, "overlap": overlap, "window": window, "detrend": detrend, "sides": sides,
+    options = {"segment": segment, "segment_s": segment_s, "overlap": overlap, "window": window, "detrend": detrend,
+               "sides": sides,
                "scaling": scaling, "bins": bins}
     path = _path(source)
     what: Union[str, dict[str, Any]] = path if path is not None else _columns(source, rate_hz, names, units, channels)
     return [Spectrum(**one) for one in _libchar.psd(what, _reading(reading, path is None), options)]
 
 
-def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None, threshold: Optional[float] = None, remedies: bool = True,
+def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None, threshold: Optional[float] = None,
+        remedies: bool = True,
         second_opinion: bool = True, still: Optional[str] = None, temperature: Optional[str] = None, data: str = "rate",
         nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
         threads: Optional[int] = None) -> list[NoiseFit]:
     """Noise coefficients with 95 % intervals, one result a channel (`sensorchar fit`).
 
-    terms           offered to the fit from the start: white_noise, bias_instability, random_walk, rate_ramp, quantization
+    terms           offered to the fit from the start: white_noise, bias_instability, random_walk, rate_ramp,
+                    quantization
     threshold       likelihood ratio above which a term counts as present (5.41: 1 % false)
     remedies        clean spikes, clip lines, add ramp, bandwidth or quantization terms where an alarm asks for it
     second_opinion  fit the Allan curve as well
@@ -211,7 +232,8 @@ def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None,
     Coefficients are roots of two-sided densities, in U·√s (N), U (B), U/√s (K).
     """
     reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
-    options = {"only": "fit", "terms": None if terms is None else list(terms), "threshold": threshold, "remedies": remedies,
+    options = {"only": "fit", "terms": None if terms is None else list(terms), "threshold": threshold,
+               "remedies": remedies,
                "second_opinion": second_opinion, "still": still, "temperature": temperature, "data": data,
                "nominal_frequency": nominal_frequency}
     kept = _characterized(source, reading, options)
@@ -220,10 +242,13 @@ def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None,
     return [_fit(channel) for channel in fits]
 
 
-def characterize(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev", taus: Union[str, Sequence[float]] = "ten",
-                 terms: Names = None, threshold: Optional[float] = None, remedies: bool = True, second_opinion: bool = True,
+def characterize(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev",
+                 taus: Union[str, Sequence[float]] = "ten",
+                 terms: Names = None, threshold: Optional[float] = None, remedies: bool = True,
+                 second_opinion: bool = True,
                  still: Optional[str] = None, temperature: Optional[str] = None, data: str = "rate",
-                 nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
+                 nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None,
+                 units: Names = None,
                  threads: Optional[int] = None) -> Characterization:
     """Everything about a recording: curves, coefficients, models, a page (`sensorchar characterize`).
 
@@ -240,13 +265,16 @@ def characterize(source: Source, rate_hz: Optional[float] = None, *, type: str =
     by_name = {c["name"]: _curve(c, curves.get("type", type)) for c in curves["channels"]}
     fits = {c["name"]: _fit(c) for c in kept.fits()["channels"]}
     units_of = {c["name"]: c["unit"] for c in document["recording"]["channels"]}
-    reports = [ChannelReport(name, units_of.get(name, ""), fits.get(name), by_name.get(name), problems) for name, problems in kept.problems()]
+    reports = [ChannelReport(name, units_of.get(name, ""), fits.get(name), by_name.get(name), problems) for name,
+               problems in kept.problems()]
     return Characterization(document["verdict"], reports, document, kept.seconds(), kept)
 
 
-def simulate(model: Union[str, "os.PathLike[str]"], *, duration_s: float = 3600, rate_hz: Optional[float] = None, seed: int = 1,
+def simulate(model: Union[str, "os.PathLike[str]"], *, duration_s: float = 3600, rate_hz: Optional[float] = None,
+             seed: int = 1,
              devices: int = 1, truth: Optional[str] = None, faults: Names = None) -> Recording:
-    """Devices of one sensor model, the truth as last channel (`sensorchar simulate`). The same seed gives the same samples.
+    """Devices of one sensor model, the truth as last channel (`sensorchar simulate`). The same seed gives the
+    same samples.
 
     model       path of a model (.sensor.yaml), or its text, as `Characterization.models()` has it
     duration_s  length in s
@@ -263,21 +291,25 @@ def simulate(model: Union[str, "os.PathLike[str]"], *, duration_s: float = 3600,
 def replay(source: Source, *, sensors: Names = None, reference: Union[None, str, Sequence[str]] = None,
            learning: Optional[tuple[float, float]] = None, evaluation: Optional[tuple[float, float]] = None,
            rest: Optional[tuple[float, float]] = None, warm_up_s: Optional[float] = None, algorithms: Names = None,
-           models_folder: Optional[str] = None, allan: bool = True, budget_s: Optional[float] = None, timing: bool = True,
-           allow_outside: bool = False, rate_hz: Optional[float] = None, names: Names = None, units: Names = None) -> ReplayResult:
+           models_folder: Optional[str] = None, allan: bool = True, budget_s: Optional[float] = None,
+           timing: bool = True,
+           allow_outside: bool = False, rate_hz: Optional[float] = None, names: Names = None,
+           units: Names = None) -> ReplayResult:
     """Every fusion algorithm that has what it needs, compared on one recording (`sensorchar replay`).
 
-    source      scene file, path of a log, Recording, or arrays; what is in memory is written once to a temporary file, as a replay reads
-                its recording several times
+    source      scene file, path of a log, Recording, or arrays; what is in memory is written once to a
+                temporary file, as a replay reads its recording several times
     sensors     channels that measure one quantity: names or patterns ("gyro*")
     reference   channel with the truth; of several the mean
     learning, evaluation, rest   windows (from, to) in s
     algorithms  these only (`sensorchar replay --list`)
     """
     listed = [reference] if isinstance(reference, str) else reference
-    options = {"sensors": None if sensors is None else list(sensors), "reference": None if listed is None else list(listed),
+    options = {"sensors": None if sensors is None else list(sensors),
+               "reference": None if listed is None else list(listed),
                "learning": learning, "evaluation": evaluation, "rest": rest, "warm_up_s": warm_up_s,
-               "algorithms": None if algorithms is None else list(algorithms), "models_folder": models_folder, "allan": allan,
+               "algorithms": None if algorithms is None else list(algorithms), "models_folder": models_folder,
+               "allan": allan,
                "budget_s": budget_s, "timing": timing, "allow_outside": allow_outside}
     path = _path(source)
     if path is not None:

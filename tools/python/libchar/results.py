@@ -1,4 +1,5 @@
-"""What the functions return. Every result has `to_dict()`: the keys of the program's JSON documents (docs/json.md), arrays as lists."""
+"""What the functions return. Every result has `to_dict()`: the keys of the program's JSON documents
+(docs/json.md), arrays as lists."""
 from __future__ import annotations
 
 import dataclasses

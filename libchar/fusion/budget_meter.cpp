@@ -4,7 +4,7 @@
 // more than u' is the delay's too. Of what alignment leaves, r, the part that follows (dx/dt)^2,
 //   r^2 = noise + jitter^2 (dx/dt)^2,
 // is a delay that jitters: its sign changes, its size is that of the slope. The rest is noise.
-#include "libchar/fusion/error_budget.hpp"
+#include "libchar/fusion/budget_meter.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // A channel sees the common input late, scaled, shifted and with some of the other axes:
 //   y(t) = b + (1 + g) x(t - d) + sum_k m_k c_k(t)   so that
 //   z(t) = (y(t + d) - b - sum_k m_k c_k(t)) / (1 + g)   is x again.
-#include "libchar/fusion/alignment.hpp"
+#include "libchar/fusion/aligner.hpp"
 
 #include <cmath>
 

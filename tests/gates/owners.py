@@ -1,0 +1,45 @@
+"""Questions, and the one function that answers each. Another spelling of its answer is refused outside of the
+owner's file.
+
+A row that others still spell has ceilings in ceilings.tsv, which only shrink. A new owner takes the old one's
+place here.
+"""
+import dataclasses
+import re
+
+
+@dataclasses.dataclass(frozen=True)
+class Question:
+    name: str
+    owner: str  # "FILE: NAME": the file that may spell it, a name that it defines; "": nobody may
+    spelling: str  # in code, literals included, comments not
+
+    def file(self):
+        return self.owner.split(":")[0]
+
+    def is_there(self, text):
+        return re.search(rf"\b{re.escape(self.owner.split(': ')[1])}\b", text) is not None
+
+
+QUESTIONS = [
+    Question("word of a shell", "libchar/core/shell_word.cpp: shell_word", r"'\\\\''"),
+    Question("cell of CSV", "libchar/core/csv_cell.cpp: csv_cell", r'"\\"\\""'),
+    Question("entities of HTML and XML", "libchar/core/markup.cpp: markup_entities", r"&(?:amp|lt|gt|quot|#39);"),
+    Question("range FROM..TO", "libchar/core/quantity_text.cpp: parse_range", r'\bfind\("\.\."\)'),
+    Question("number in a text", "libchar/core/decimal.cpp: parse_double",
+             r"\bstd::sto(?:d|f|i|l|ul|ll)\(|\bstrto(?:d|f|l|ll|ul)\(|\bato[fil]\("),
+    Question("length of time in words", "libchar/core/readable.cpp: duration_text", r'\} (?:min|h)\b|" (?:min|h)"'),
+    Question("digits of a number", "libchar/core/readable.cpp: number_text", r"\{\w*:[#+]?(?:\.\d+)?g\}"),
+    Question("value in the field's units", "libchar/core/units.cpp: habitual_units", r"\bhabitual_units\((?!std::)"),
+    Question("one or many", "libchar/core/text.cpp: plural", r'== 1 \? "" : "s"|\? "s" : ""'),
+    Question("nearest word that exists", "libchar/core/spelling.cpp: did_you_mean", r'"did you mean'),
+    Question("rating of a channel", "libchar/characterize/summary.cpp: Rating", r"(?<!== )\bRating::(?:caution|bad)\b"),
+    Question("recording in JSON", "libchar/log/recording_json.cpp: recording_json",
+             r'"(?:log_format|jitter_s|rows_dropped)"'),
+    Question("end of a 95 % interval", "libchar/core/interval.hpp: kNormal95", r"\b1\.96\b|\b1\.9599"),
+    Question("file that is whole or absent", "libchar/core/whole_file.cpp: WholeFile", r"\bstd::ofstream\b|\bfopen\("),
+    # No code searches a sentence that the program itself made: what it means is data.
+    Question("what a sentence means", "",
+             r'\brfind\("[a-z]+ ", 0\)|\bstarts_with\("[A-Z][a-z]+ [^"]*"\)|\.find\("published"\)'
+             r"|substr\((\w+)\.find\('\['\)\)"),
+]
