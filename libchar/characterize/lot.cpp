@@ -11,10 +11,10 @@
 #include <set>
 
 #include "libchar/characterize/detail/alike_runs.hpp"
-#include "libchar/characterize/verdict.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/log_files.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/shaped_curves.hpp"
 

@@ -129,7 +129,7 @@ void run_one_by_one(Session& session,
       documents.push_back(json_report(view));
       continue;
     }
-    print_beside(session, characterization_text(view, table_width()));
+    print_beside(session, characterization_text(view, text_look()));
     say_written(session, outputs, removed);
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
@@ -208,7 +208,7 @@ void run_pooled(Session& session,
   all.push_back({verb.folder, runs_files(report, verb.folder)});
   const auto removed = write_folders(session, verb, all);
   if (verb.json) return print(dump_json(runs_json(report)));
-  print_beside(session, runs_text(report));
+  print_beside(session, runs_text(report, text_look()));
   say_written(session, all.back().files, removed);
 }
 
@@ -229,7 +229,9 @@ void run_lot(Session& session,
   print_beside(session, lot_text(report, table_width()));
   for (const Characterization& result : results)
     if (result.limits)
-      print_beside(session, "\n" + printable(result.log.file) + limits_text(*result.limits));
+      print_beside(
+          session,
+          "\n" + printable(result.log.file) + limits_text(*result.limits, text_look().colours));
   say_written(session, all.back().files, removed);
 }
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -88,9 +88,9 @@ void check_runs(std::span<const Characterization> runs) {
       refuse_run(
           run,
           fmt::format("is sampled at {} Hz, and {} at {} Hz: runs of one sensor have one rate",
-                      significant(rate, 6),
+                      brief_text(rate, 6),
                       first.log.file,
-                      significant(other, 6)));
+                      brief_text(other, 6)));
     if (std::none_of(run.channels.begin(), run.channels.end(), [](const ChannelResult& c) {
           return c.fit.has_value();
         }))

@@ -11,6 +11,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/log/time/grid.hpp"
 
 namespace libchar {
@@ -264,12 +265,11 @@ void TimeGrid::watch_rate(const Pending& front, std::size_t row, double ratio) {
     ratio_place_ = row > 0 ? place(front, row - 1) : end_of_block_;
   }
   if (++same_ratio_ != kRateRun) return;
-  warnings_.add(
-      "rate_change",
-      fmt::format("the sampling rate changes ({:.6g} to {:.6g} Hz): the grid keeps the first",
-                  1e9 / dt_,
-                  1e9 / (dt_ * ratio)),
-      ratio_place_);
+  warnings_.add("rate_change",
+                fmt::format("the sampling rate changes ({} to {} Hz): the grid keeps the first",
+                            brief_text(1e9 / dt_, 6),
+                            brief_text(1e9 / (dt_ * ratio), 6)),
+                ratio_place_);
 }
 
 }  // namespace libchar
