@@ -7,8 +7,8 @@
 
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/characterize/detail/summary.hpp"
 #include "libchar/characterize/limits.hpp"
-#include "libchar/characterize/summary.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/readable.hpp"

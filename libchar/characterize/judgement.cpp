@@ -60,90 +60,6 @@ std::string events_taken_out(const NoiseFit& fit) {
   return joined(parts) + (all == 1 ? " was taken out" : " were taken out");
 }
 
-void add(Judgement& out, Objection objection) {
-  out.rating = std::max(out.rating, objection.rating);
-  out.objections.push_back(std::move(objection));
-}
-
-void look_at_terms(const NoiseFit& fit, Judgement& out) {
-  if (const std::string letters = letters_with(fit, Status::undetermined); !letters.empty())
-    add(out,
-        {ObjectionKind::undetermined,
-         Rating::caution,
-         letters +
-             " undetermined: not told from another term, or contradicted by the Allan curve"});
-  for (std::size_t t = 0; t < kTerms; ++t)
-    if (fit.term[t].status == Status::detected && !(fit.term[t].ci95.low > 0))
-      add(out,
-          {ObjectionKind::reaches_zero,
-           Rating::caution,
-           fmt::format("{} is uncertain: its interval includes 0", kTermNames[t].letter)});
-}
-
-void look_at_goodness(const NoiseFit& fit, Judgement& out) {
-  const bool explained = fit.goodness.p >= kDoubtful;
-  const std::string sentence = explained ? "" : goodness_sentence(fit.goodness);
-  if (!letters_with(fit, Status::misfit).empty())
-    add(out,
-        {ObjectionKind::misfit,
-         Rating::bad,
-         "the noise terms do not describe the recording",
-         sentence});
-  else if (!explained)
-    add(out,
-        {ObjectionKind::unexplained,
-         Rating::bad,
-         fmt::format("the model does not explain the spectrum ({})",
-                     probability_text(fit.goodness.p)),
-         sentence});
-  if (!fit.converged)
-    add(out,
-        {ObjectionKind::not_converged,
-         Rating::bad,
-         "the fit did not converge",
-         "The fit did not converge."});
-}
-
-void look_at_fit(const NoiseFit& fit, Judgement& out) {
-  look_at_goodness(fit, out);
-  look_at_terms(fit, out);
-  for (const Remedy& remedy : fit.remedies)
-    for (const auto& [kind, phrase] : kRemedies)
-      if (remedy.kind == kind)
-        add(out, {ObjectionKind::remedy, Rating::caution, std::string(phrase)});
-  if (!fit.events.empty())
-    add(out, {ObjectionKind::events, Rating::caution, events_taken_out(fit)});
-  if (fit.second_opinion && !fit.second_opinion->agrees)
-    add(out,
-        {ObjectionKind::allan_disagrees,
-         Rating::caution,
-         "the fit of the Allan curve disagrees",
-         "The Allan fit disagrees: " + fit.second_opinion->sentence});
-  if (fit.stationarity.noticeable)
-    add(out,
-        {ObjectionKind::not_stationary,
-         Rating::caution,
-         "the noise is not the same throughout the recording"});
-}
-
-void look_at_motion(const Motion& motion, Judgement& out) {
-  if (motion.moving_s.empty() && motion.changes.empty()) return;
-  std::vector<std::string> parts;
-  if (!motion.moving_s.empty())
-    parts.push_back("moved or shaken in " + counted(motion.moving_s.size(), "stretch", "es"));
-  if (motion.changes.size() == 1)
-    parts.push_back(fmt::format("the noise is {} times as strong from {} s on",
-                                brief_text(motion.changes[0].factor),
-                                place_text(motion.changes[0].at_s)));
-  else if (!motion.changes.empty())
-    parts.push_back(fmt::format("the noise changes its strength {} times", motion.changes.size()));
-  add(out,
-      {ObjectionKind::motion,
-       Rating::caution,
-       fmt::format("{}", fmt::join(parts, "; ")),
-       fmt::format("{}", fmt::join(motion.sentences, " "))});
-}
-
 /// A noise of which a hundredth does not fit into the range is not the one that was recorded.
 constexpr double kMostSaturated = 0.01;
 /// Fewer missing samples cost nothing worth mentioning: terms that touch them are left out.
@@ -153,58 +69,117 @@ double share_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-void look_at_samples(const ChannelResult& channel, Judgement& out) {
-  const ChannelQuality& q = channel.quality;
-  const double cut = share_of(q.saturated, q.samples);
-  const bool said = !q.suggestions.empty() || !channel.digital.rails.empty();
-  const std::string sentence =
-      said ? "" : fmt::format("{} samples stand at the end of the range.", count_text(q.saturated));
-  if (cut > kMostSaturated)
-    add(out,
-        {ObjectionKind::saturated,
-         Rating::bad,
-         fmt::format("{} of the samples stand at the end of the range", percent_text(cut)),
-         sentence});
-  else if (q.saturated > 0 && q.suggestions.empty())
-    add(out,
-        {ObjectionKind::saturated,
-         Rating::caution,
-         fmt::format("{} {} at the end of the range",
-                     count_text(q.saturated),
-                     q.saturated == 1 ? "sample stands" : "samples stand"),
-         sentence});
-  if (const double share = share_of(q.missing, q.samples + q.missing); share > kMostMissing)
-    add(out,
-        {ObjectionKind::missing,
-         Rating::caution,
-         fmt::format("{} of the samples are missing", percent_text(share)),
-         fmt::format("{} samples ({}) are missing.", count_text(q.missing), percent_text(share))});
+std::string motion_phrase(const Motion& motion) {
+  std::vector<std::string> parts;
+  if (!motion.moving_s.empty())
+    parts.push_back("moved or shaken in " + counted(motion.moving_s.size(), "stretch", "es"));
+  if (motion.changes.size() == 1)
+    parts.push_back(fmt::format("the noise is {} times as strong from {} s on",
+                                brief_text(motion.changes[0].factor),
+                                place_text(motion.changes[0].at_s)));
+  else if (!motion.changes.empty())
+    parts.push_back(fmt::format("the noise changes its strength {} times", motion.changes.size()));
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-void look_at_verification(const ChannelVerification& verification, Judgement& out) {
-  if (verification.agrees) return;
-  const bool nearly = verification.nearly;
-  add(out,
-      {ObjectionKind::simulation,
-       nearly ? Rating::caution : Rating::bad,
-       nearly ? "a simulation of the model differs by a few per cent"
-              : "a simulation of the model does not agree",
-       verification.sentences.front()});
-}
+struct Judge {
+  using enum ObjectionKind;
+  using enum Rating;
 
-// Sentences that other parts have made; without a fit they say why there is none.
-void look_at_sentences(const ChannelResult& channel, Judgement& out) {
-  const auto& phrased = channel.motion.sentences;
-  const auto kind = channel.fit ? ObjectionKind::found : ObjectionKind::no_fit;
-  const auto rating = channel.fit ? Rating::caution : Rating::bad;
-  for (const std::string& sentence : channel.problems)
-    if (!channel.fit || std::find(phrased.begin(), phrased.end(), sentence) == phrased.end())
-      add(out, {kind, rating, channel.fit ? as_part(sentence) : without_stop(sentence), sentence});
-  if (!channel.fit && channel.problems.empty())
-    add(out, {kind, rating, "no noise coefficients were computed", ""});
-  for (const std::string& sentence : channel.quality.suggestions)
-    add(out, {ObjectionKind::found, Rating::caution, as_part(sentence), sentence});
-}
+  const ChannelResult& channel;
+  Judgement out;
+
+  void add(ObjectionKind kind, Rating rating, std::string phrase, std::string sentence = "") {
+    out.rating = std::max(out.rating, rating);
+    out.objections.push_back({kind, rating, std::move(phrase), std::move(sentence)});
+  }
+
+  void look_at_goodness(const NoiseFit& fit) {
+    const bool explained = fit.goodness.p >= kDoubtful;
+    const std::string sentence = explained ? "" : goodness_sentence(fit.goodness);
+    const std::string p = probability_text(fit.goodness.p);
+    if (!letters_with(fit, Status::misfit).empty())
+      add(misfit, bad, "the noise terms do not describe the recording", sentence);
+    else if (!explained)
+      add(unexplained, bad, "the model does not explain the spectrum (" + p + ")", sentence);
+    if (!fit.converged)
+      add(not_converged, bad, "the fit did not converge", "The fit did not converge.");
+  }
+
+  void look_at_terms(const NoiseFit& fit) {
+    if (const std::string letters = letters_with(fit, Status::undetermined); !letters.empty())
+      add(undetermined,
+          caution,
+          letters +
+              " undetermined: not told from another term, or contradicted by the Allan curve");
+    for (std::size_t t = 0; t < kTerms; ++t)
+      if (fit.term[t].status == Status::detected && !(fit.term[t].ci95.low > 0))
+        add(reaches_zero,
+            caution,
+            fmt::format("{} is uncertain: its interval includes 0", kTermNames[t].letter));
+  }
+
+  void look_at_fit(const NoiseFit& fit) {
+    look_at_goodness(fit);
+    look_at_terms(fit);
+    for (const Remedy& taken : fit.remedies)
+      for (const auto& [kind, phrase] : kRemedies)
+        if (taken.kind == kind) add(remedy, caution, std::string(phrase));
+    if (!fit.events.empty()) add(events, caution, events_taken_out(fit));
+    if (fit.second_opinion && !fit.second_opinion->agrees)
+      add(allan_disagrees,
+          caution,
+          "the fit of the Allan curve disagrees",
+          "The Allan fit disagrees: " + fit.second_opinion->sentence);
+    if (fit.stationarity.noticeable)
+      add(not_stationary, caution, "the noise is not the same throughout the recording");
+    const Motion& moved = channel.motion;
+    if (const std::string phrase = motion_phrase(moved); !phrase.empty())
+      add(motion, caution, phrase, fmt::format("{}", fmt::join(moved.sentences, " ")));
+  }
+
+  void look_at_verification(const ChannelVerification& simulated) {
+    if (simulated.agrees) return;
+    add(simulation,
+        simulated.nearly ? caution : bad,
+        simulated.nearly ? "a simulation of the model differs by a few per cent"
+                         : "a simulation of the model does not agree",
+        simulated.sentences.front());
+  }
+
+  void look_at_samples(const ChannelQuality& q) {
+    const double cut = share_of(q.saturated, q.samples);
+    const std::string stand = q.saturated == 1 ? "sample stands" : "samples stand";
+    const std::string phrase = (cut > kMostSaturated ? percent_text(cut) + " of the samples stand"
+                                                     : count_text(q.saturated) + " " + stand) +
+                               " at the end of the range";
+    const bool said = !q.suggestions.empty() || !channel.digital.rails.empty();
+    const std::string sentence = said ? "" : phrase + ".";
+    if (cut > kMostSaturated)
+      add(saturated, bad, phrase, sentence);
+    else if (q.saturated > 0 && q.suggestions.empty())
+      add(saturated, caution, phrase, sentence);
+    if (const double share = share_of(q.missing, q.samples + q.missing); share > kMostMissing)
+      add(missing,
+          caution,
+          percent_text(share) + " of the samples are missing",
+          fmt::format("{} samples ({}) are missing.", count_text(q.missing), percent_text(share)));
+  }
+
+  // Sentences that other parts have made; without a fit they say why there is none.
+  void look_at_sentences() {
+    const auto& phrased = channel.motion.sentences;
+    for (const std::string& sentence : channel.problems)
+      if (!channel.fit)
+        add(no_fit, bad, without_stop(sentence), sentence);
+      else if (std::find(phrased.begin(), phrased.end(), sentence) == phrased.end())
+        add(found, caution, as_part(sentence), sentence);
+    if (!channel.fit && channel.problems.empty())
+      add(no_fit, bad, "no noise coefficients were computed");
+    for (const std::string& sentence : channel.quality.suggestions)
+      add(found, caution, as_part(sentence), sentence);
+  }
+};
 
 }  // namespace
 
@@ -235,15 +210,12 @@ std::string as_part(const std::string& whole) {
 }
 
 Judgement judge(const ChannelResult& channel) {
-  Judgement out;
-  if (channel.fit) {
-    look_at_fit(*channel.fit, out);
-    look_at_motion(channel.motion, out);
-  }
-  if (channel.verification) look_at_verification(*channel.verification, out);
-  look_at_samples(channel, out);
-  look_at_sentences(channel, out);
-  return out;
+  Judge found{channel, {}};
+  if (channel.fit) found.look_at_fit(*channel.fit);
+  if (channel.verification) found.look_at_verification(*channel.verification);
+  found.look_at_samples(channel.quality);
+  found.look_at_sentences();
+  return found.out;
 }
 
 std::string goodness_sentence(const Goodness& g) {

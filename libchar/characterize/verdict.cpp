@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "libchar/core/readable.hpp"
+#include "libchar/core/spelling.hpp"
 #include "libchar/core/term_cells.hpp"
 
 namespace libchar {
@@ -71,14 +72,6 @@ const Objection* unsaid(const Judgement& judgement, Rating rating) {
   return nullptr;
 }
 
-std::string list_of(const std::vector<std::string>& names) {
-  std::string out;
-  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 6); ++i)
-    out += (i == 0 ? "" : ", ") + names[i];
-  if (names.size() > 6) out += fmt::format(" and {} more", names.size() - 6);
-  return out;
-}
-
 // "The noise model explains both channels within their scatter, and the Allan fits agree."
 std::string explained_sentence(const Characterization& result,
                                const std::vector<Judgement>& judged) {
@@ -119,7 +112,7 @@ std::string unsaid_sentence(const Characterization& result,
   if (names.empty()) return "";
   return fmt::format(" {} {}{}: {}.",
                      rating == Rating::bad ? "Do not use" : "Use",
-                     judged.size() == 1 ? "it" : list_of(names),
+                     judged.size() == 1 ? "it" : first_names(names),
                      rating == Rating::bad ? "" : " with caution",
                      names.size() == 1 ? phrase : "see what is said of them");
 }
@@ -168,7 +161,7 @@ std::string verdict_of(const Characterization& result, const std::vector<Judgeme
     for (std::size_t c = 0; c < judged.size(); ++c)
       if (judged[c].has(row.kind) || judged[c].has(row.or_kind))
         names.push_back(result.channels[c].channel.name);
-    if (!names.empty()) out += row.before + list_of(names) + row.behind;
+    if (!names.empty()) out += row.before + first_names(names) + row.behind;
   }
   for (const Rating rating : {Rating::bad, Rating::caution})
     out += unsaid_sentence(result, judged, rating);

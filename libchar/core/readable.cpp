@@ -19,23 +19,46 @@ std::string without_zeros(std::string decimal) {
   return decimal;
 }
 
+struct Scientific {
+  std::string mantissa;
+  int exponent = 0;
+  bool power = false;  ///< to be written as one
+};
+
+Scientific scientific(double value, int digits) {
+  const std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  const std::size_t e = text.find('e');
+  const int exponent = std::stoi(text.substr(e + 1));
+  return {text.substr(0, e), exponent, exponent < kLeastPlain || exponent > std::max(digits, 5)};
+}
+
 std::string written(double value, int digits, bool brief) {
   if (!std::isfinite(value)) return "–";
   if (value == 0) return "0";
-  const std::string scientific = fmt::format("{:.{}e}", value, digits - 1);
-  const std::size_t e = scientific.find('e');
-  const int exponent = std::stoi(scientific.substr(e + 1));
-  const bool power = exponent < kLeastPlain || exponent > std::max(digits, 5);
-  std::string decimal = power ? scientific.substr(0, e)
-                              : fmt::format("{:.{}f}", value, std::max(0, digits - 1 - exponent));
+  const Scientific s = scientific(value, digits);
+  std::string decimal =
+      s.power ? s.mantissa : fmt::format("{:.{}f}", value, std::max(0, digits - 1 - s.exponent));
   if (brief) decimal = without_zeros(std::move(decimal));
-  return power ? decimal + "×" + power_of_ten(exponent) : decimal;
+  return s.power ? decimal + "×" + power_of_ten(s.exponent) : decimal;
 }
 
 }  // namespace
 
 std::string number_text(double value, int digits) {
   return written(value, digits, false);
+}
+
+std::string end_text(double end, double of, int digits) {
+  if (std::isinf(end)) return "no end";
+  if (end == 0 || of == 0 || !std::isfinite(of)) return number_text(end, digits);
+  const Scientific s = scientific(of, digits);
+  // Where only the end would have a power, it has few digits of the value's.
+  if (!s.power)
+    return scientific(end, digits).power
+               ? fmt::format("{:.{}f}", end, std::max(0, digits - 1 - s.exponent))
+               : number_text(end, digits);
+  return fmt::format(
+      "{:.{}f}×{}", end / std::pow(10.0, s.exponent), digits - 1, power_of_ten(s.exponent));
 }
 
 std::string brief_text(double value, int digits) {
@@ -99,11 +122,9 @@ std::string excess_text(double share) {
 }
 
 std::string interval_text(const Interval& interval, int digits, double factor) {
-  const auto end = [&](double value) {
-    return std::isinf(value) ? "no end" : number_text(value * factor, digits);
-  };
   if (std::isnan(interval.low) || std::isnan(interval.high)) return "–";
-  return end(interval.low) + " … " + end(interval.high);
+  const double low = interval.low * factor, high = interval.high * factor;
+  return end_text(low, low, digits) + " … " + end_text(high, high, digits);
 }
 
 std::string value_text(const Coefficient& c, double factor) {
@@ -115,10 +136,11 @@ std::string value_text(const Coefficient& c, double factor) {
 std::string coefficient_text(const Coefficient& c, double factor) {
   if (!c.value) return value_text(c, factor);
   const int digits = digits_of(c);
+  const double value = *c.value * factor;
   return fmt::format("{} [{}, {}]",
-                     number_text(*c.value * factor, digits),
-                     number_text(c.ci95.low * factor, digits),
-                     number_text(c.ci95.high * factor, digits));
+                     number_text(value, digits),
+                     end_text(c.ci95.low * factor, value, digits),
+                     end_text(c.ci95.high * factor, value, digits));
 }
 
 std::string count_text(std::uint64_t count) {

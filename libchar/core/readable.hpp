@@ -16,7 +16,10 @@ namespace libchar {
 /// "0.00498", "1.20×10⁻⁵": `digits` significant digits, zeros at the end included; "–" for NaN and infinity.
 std::string number_text(double value, int digits = 4);
 
-/// The same without zeros at the end: "200", "0.05", "1.2×10⁻⁵".
+/// An end of the interval of `of`, with the same power of ten: "10.03×10⁻⁵" to 9.97×10⁻⁵; "no end" for infinity.
+std::string end_text(double end, double of, int digits);
+
+/// As `number_text` without zeros at the end: "200", "0.05", "1.2×10⁻⁵".
 std::string brief_text(double value, int digits = 3);
 
 /// "10⁻⁵".

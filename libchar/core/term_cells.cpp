@@ -19,10 +19,6 @@ std::string plus_minus(double share) {
 // Longer ones are extrapolated by too much.
 constexpr double kLongestLength_s = 3.2e8;
 
-std::string end_text(double value, int digits) {
-  return std::isinf(value) ? "no end" : number_text(value, digits);
-}
-
 }  // namespace
 
 ShownValue shown_value(const Coefficient& c, double factor, std::string unit) {
@@ -30,8 +26,8 @@ ShownValue shown_value(const Coefficient& c, double factor, std::string unit) {
   out.value = value_text(c, factor);
   out.unit = std::move(unit);
   if (!c.value || c.status == Status::given || !(c.ci95.high > 0)) return out;
-  out.low = end_text(c.ci95.low * factor, digits_of(c));
-  out.high = end_text(c.ci95.high * factor, digits_of(c));
+  out.low = end_text(c.ci95.low * factor, *c.value * factor, digits_of(c));
+  out.high = end_text(c.ci95.high * factor, *c.value * factor, digits_of(c));
   return out;
 }
 

@@ -165,9 +165,8 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
     dialect += (dialect == info.format ? ": " : "; ") + printable(fact);
   text += "  read as " + dialect + "\n";
   for (const std::string& guess : info.guesses) text += "  guessed: " + printable(guess) + "\n";
-  const std::string front = printable(info.file) + ": warning: ";
   for (const Warning& warning : info.warnings.list())
-    text += "  warning: " + one_line(warning, info.file).substr(front.size()) + "\n";
+    text += "  warning: " + sentence_of(warning) + "\n";
   text += is_listing(info) ? topic_table(info, width) : channel_table(inspection, width);
   return text + remarks(inspection);
 }

@@ -113,7 +113,8 @@ Json trace_json(const ChannelView& view) {
 
 Json summary_json(const ChannelView& view) {
   Json spoils = Json::array();
-  for (const Objection& objection : view.judgement.objections) spoils.push_back(json_text(objection.phrase));
+  for (const Objection& objection : view.judgement.objections)
+    spoils.push_back(json_text(objection.phrase));
   return {{"name", json_text(view.result->channel.name)},
           {"rating", name_of(view.judgement.rating)},
           {"sentence", json_text(view.summary)},

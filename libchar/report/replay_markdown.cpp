@@ -13,12 +13,6 @@
 namespace libchar {
 namespace {
 
-std::string between(const Interval& i) {
-  return std::isfinite(i.low) && std::isfinite(i.high)
-             ? fmt::format("{} … {}", brief_text(i.low, 4), brief_text(i.high, 4))
-             : "–";
-}
-
 std::string with_reference(const ReplayView& view) {
   std::string out =
       "| algorithm | RMSE | 95 % | regret | bias | maximum | availability | a sample | memory |\n"
@@ -30,8 +24,8 @@ std::string with_reference(const ReplayView& view) {
                        markdown_text(a->label),
                        a->bound ? " (bound)" : "",
                        a->as_good_as_best && !a->bound ? " \\*" : "",
-                       brief_text(a->rmse, 4),
-                       between(a->rmse_ci95),
+                       number_text(a->rmse),
+                       interval_text(a->rmse_ci95),
                        excess_text(a->regret),
                        scored ? brief_text(a->inputs[0].error.bias, 2) : "–",
                        scored ? brief_text(a->inputs[0].error.maximum, 3) : "–",
@@ -52,8 +46,8 @@ std::string without_reference(const ReplayView& view) {
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(a->label),
                        a->as_good_as_best ? " \\*" : "",
-                       brief_text(a->rmse, 4),
-                       between(a->rmse_ci95),
+                       number_text(a->rmse),
+                       interval_text(a->rmse_ci95),
                        a->blind ? brief_text(a->blind->split_rms, 4) : "–",
                        percent_text(a->availability, 4),
                        duration_text(1e-9 * a->ns_per_sample),
@@ -77,8 +71,8 @@ std::string several_inputs(const ReplayView& view) {
       if (j >= a->inputs.size()) continue;
       out += fmt::format("| {} | {} | {} | {} |\n",
                          markdown_text(a->label),
-                         brief_text(a->inputs[j].error.rmse, 4),
-                         between(a->inputs[j].error.rmse_ci95),
+                         number_text(a->inputs[j].error.rmse),
+                         interval_text(a->inputs[j].error.rmse_ci95),
                          brief_text(a->inputs[j].optimum_ratio, 4));
     }
   }

@@ -37,11 +37,8 @@ std::string replay_text(const ReplayView& view, std::size_t width) {
   for (const AlgorithmView* v : view.ranked) {
     const AlgorithmResult* a = v->result;
     rows.push_back({printable(a->label),
-                    brief_text(a->rmse, 5),
-                    std::isfinite(a->rmse_ci95.low) ? fmt::format("{} to {}",
-                                                                  brief_text(a->rmse_ci95.low, 4),
-                                                                  brief_text(a->rmse_ci95.high, 4))
-                                                    : "–",
+                    number_text(a->rmse),
+                    interval_text(a->rmse_ci95),
                     excess_text(a->regret),
                     brief_text(a->ns_per_sample, 3),
                     bytes_text(a->peak_bytes),

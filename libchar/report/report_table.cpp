@@ -198,19 +198,15 @@ std::string ranking_table(const ReplaySummary& report, TableFormat format) {
                 {"memory"}};
   table.alignment = "lrlrrr";
   for (const AlgorithmSummary* a : best_first(report)) {
-    const bool known = std::isfinite(a->rmse_ci95.low) && std::isfinite(a->rmse_ci95.high);
     const auto bytes = std::isfinite(a->peak_bytes)
                            ? std::optional(static_cast<std::uint64_t>(a->peak_bytes))
                            : std::nullopt;
-    table.rows.push_back(
-        {{printable(a->label) + (a->bound ? " (bound)" : "")},
-         {brief_text(a->rmse, 4)},
-         {known ? fmt::format(
-                      "{} … {}", brief_text(a->rmse_ci95.low, 4), brief_text(a->rmse_ci95.high, 4))
-                : "–"},
-         {excess_text(a->regret)},
-         {duration_text(1e-9 * a->ns_per_sample)},
-         {bytes_text(bytes)}});
+    table.rows.push_back({{printable(a->label) + (a->bound ? " (bound)" : "")},
+                          {number_text(a->rmse)},
+                          {interval_text(a->rmse_ci95)},
+                          {excess_text(a->regret)},
+                          {duration_text(1e-9 * a->ns_per_sample)},
+                          {bytes_text(bytes)}});
   }
   return rendered(table, format);
 }

@@ -1,4 +1,4 @@
-#include "libchar/characterize/summary.hpp"
+#include "libchar/characterize/detail/summary.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -71,8 +71,8 @@ TEST_CASE("judge: headline, badge and sentence agree on a log with 3 % of its ro
 }
 
 TEST_CASE("judge: a headline of nothing but good channels warns of none") {
-  const CharacterizationView view =
-      characterization_view(white_noise(40000, 7, [](auto&, auto&) {}));
+  const Characterization result = white_noise(40000, 7, [](auto&, auto&) {});
+  const CharacterizationView view = characterization_view(result);
   CHECK(view.rating == Rating::good);
   CHECK_THAT(view.verdict, EndsWith("agrees.") && !Contains("caution"));
 }

@@ -12,8 +12,7 @@ TEST_CASE("inspect says in one line what was understood, and marks guesses") {
   const auto ran = test::run({"inspect", test::fixture("npy/structured.npy").string()});
   CHECK(ran.code == 0);
   CHECK(ran.err.empty());
-  CHECK_THAT(ran.out,
-             Contains("structured.npy: 7 channels, 200 Hz (jitter 0 s), 25 ms, 0 gaps\n"));
+  CHECK_THAT(ran.out, Contains("structured.npy: 7 channels, 200 Hz (jitter 0 s), 25 ms, 0 gaps\n"));
   CHECK_THAT(ran.out, Contains("  guessed: time unit: ns"));
   CHECK_THAT(ran.out, Contains("gyr_0") && Contains("kurtosis of differences"));
   CHECK_THAT(

@@ -33,7 +33,7 @@ TEST_CASE("term cells: where the field has no word of its own the channel's unit
   const TermCells n = term_cells(detected(0.01, 0.0084, 0.0116), Term::white, "degC");
   CHECK(n.title == "White noise");
   CHECK(said(headline(n)) == "0.0100 degC·√s");
-  CHECK(said(n.field) == "0.0141 degC/√Hz one-sided");
+  CHECK(said(n.field) == "0.0141 °C/√Hz one-sided");
   CHECK(term_cells(detected(1, 0.9, 1.1), Term::walk, "furlong").field.empty());
 }
 
@@ -67,6 +67,9 @@ TEST_CASE("term cells: a limit stays one in every unit, an interval without an e
   const ShownValue open =
       shown_value(detected(2, 1, std::numeric_limits<double>::infinity()), 1, "s");
   CHECK(interval_brackets(open) == "[1.0, no end]");
+  const ShownValue small = shown_value(detected(9.968e-5, 9.906e-5, 1.003e-4), 1, "g");
+  CHECK(small.value + " " + interval_words(small) == "9.968×10⁻⁵ 9.906×10⁻⁵ … 10.030×10⁻⁵");
+  CHECK(shown_value(detected(2e-4, 5e-5, 4e-4), 1, "g").low == "0.00005");
   Coefficient given = detected(2, 0, 0);
   given.status = Status::given;
   CHECK(interval_words(shown_value(given, 1, "s")).empty());

@@ -10,6 +10,7 @@
 
 #include "analysis_options.hpp"
 #include "libchar/characterize/characterization_view.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/limits.hpp"
 #include "libchar/characterize/lot.hpp"
 #include "libchar/characterize/runs.hpp"
@@ -86,13 +87,17 @@ Characterization characterized(Session& session,
     VerifyOptions how;
     how.seed = verb.seed;
     result.settings.push_back(part_entry("verify", {{"seed", verb.seed}}));
-    outcome.agrees = verify(result, options, how, session.terminal) && outcome.agrees;
+    verify(result, options, how, session.terminal);
   }
   if (verb.pool) result.settings.push_back(part_entry("pool", {{"seed", verb.seed}}));
   session.terminal.clear();
   if (limits) hold_against(*limits, result, outcome);
   report_warnings(session, result.log);
-  for (const ChannelResult& c : result.channels) outcome.any_fit = outcome.any_fit || c.fit;
+  for (const ChannelResult& c : result.channels) {
+    const Judgement judgement = judge(c);
+    outcome.any_fit = outcome.any_fit || !judgement.has(ObjectionKind::no_fit);
+    outcome.agrees = outcome.agrees && !judgement.has(ObjectionKind::simulation);
+  }
   return result;
 }
 

@@ -1,4 +1,4 @@
-#include "libchar/characterize/summary.hpp"
+#include "libchar/characterize/detail/summary.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
