@@ -1,9 +1,6 @@
 #pragma once
 // Colour on a terminal: what asks for a look is seen first. Never in a file or a pipe unless --color always says so.
 
-#include <string>
-#include <string_view>
-
 #include "libchar/core/enum_table.hpp"
 
 namespace sensorchar {
@@ -13,11 +10,6 @@ enum class Colour { automatic, always, never };
 /// What --color says; automatic: on a terminal that is not "dumb", where NO_COLOR is not set.
 void use_colour(Colour colour);
 bool colours(int descriptor);
-
-/// A text of results with its statuses and ratings coloured.
-std::string coloured_result(std::string_view text);
-/// A line on stderr with "error" and "warning" coloured.
-std::string coloured_message(std::string_view line);
 
 }  // namespace sensorchar
 

@@ -10,6 +10,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/scene/fault_text.hpp"
 #include "libchar/scene/preparation_check.hpp"
@@ -29,20 +30,8 @@ using namespace libchar;
   throw Error({ErrorKind::usage, "E0910", where, what, got, hint});
 }
 
-Interval range_of(const std::string& text,
-                  const std::string& option,
-                  RangeOf what = RangeOf::duration_s) {
-  try {
-    return parse_range(text, what);
-  } catch (const Error& error) {
-    Problem problem = error.problem();
-    problem.where = option;
-    throw Error(problem);
-  }
-}
-
 TimeWindow window_from_words(const std::string& text, const std::string& option) {
-  const Interval range = range_of(text, option);
+  const Interval range = parse_range(text, RangeOf::duration_s, option);
   return {range.low, range.high};
 }
 
@@ -92,7 +81,7 @@ void set_preparation(const ReplaySource& source, Scene& scene) {
     p.to_hz = 0;
   }
   if (!source.band.empty()) {
-    const Interval band = range_of(source.band, "--band", RangeOf::rate_hz);
+    const Interval band = parse_range(source.band, RangeOf::rate_hz, "--band");
     p.from_hz = band.low;
     p.to_hz = std::isinf(band.high) ? 0 : band.high;  // 0: a high-pass filter
   }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "colour.hpp"
 #include "flag_names.hpp"
 #include "heap_meter.hpp"
 #include "libchar/core/error.hpp"
@@ -198,7 +199,7 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
     // An error after a signal is its consequence: the input of a pipe ended early.
     if (stop_signal() != 0) return stopped(stop_signal());
     const libchar::Problem problem = with_flags(with_curve_hint(session, error.problem()));
-    return fail(libchar::one_line(with_own_hint(session, problem)),
+    return fail(libchar::one_line(with_own_hint(session, problem), colours(STDERR_FILENO)),
                 exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return stopped(cancelled.signal);

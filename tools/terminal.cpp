@@ -15,6 +15,8 @@
 #include "colour.hpp"
 #include "flag_names.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/core/unfinished_files.hpp"
@@ -129,6 +131,10 @@ std::size_t table_width() {
   return columns_of_stdout().value_or(0);
 }
 
+libchar::TextLook text_look() {
+  return {table_width(), colours(STDOUT_FILENO)};
+}
+
 namespace {
 
 /// Long lines broken between words, what follows two places further in.
@@ -154,13 +160,11 @@ std::string fitted(std::string_view text, std::size_t width) {
 }  // namespace
 
 void print_text(const std::string& text) {
-  const std::string lines = fitted(with_flags(text), table_width());
-  print(colours(STDOUT_FILENO) ? coloured_result(lines) : lines);
+  print(fitted(with_flags(text), table_width()));
 }
 
 void say(std::string_view line) {
-  write_all(STDERR_FILENO,
-            (colours(STDERR_FILENO) ? coloured_message(line) : std::string(line)) + "\n");
+  write_all(STDERR_FILENO, std::string(line) + "\n");
 }
 
 Terminal::Terminal() : start_(Clock::now()), drawn_(start_) {
@@ -208,10 +212,7 @@ std::string Terminal::time_left(double fraction, std::string_view what, Clock::t
   const double seconds = std::chrono::duration<double>(now - phase_start_).count();
   const double done = fraction - phase_fraction_;
   if (seconds < 1 || done < 0.01 || fraction >= 1) return "";
-  const double left = seconds * (1 - fraction) / done;
-  if (left < 100) return fmt::format(", {:.0f} s left", left);
-  if (left < 6000) return fmt::format(", {:.0f} min left", left / 60);
-  return fmt::format(", {:.0f} h left", left / 3600);
+  return ", " + duration_text(seconds * (1 - fraction) / done, 2) + " left";
 }
 
 void Terminal::clear() {
@@ -226,7 +227,7 @@ void Terminal::warn(const libchar::Warnings& warnings, std::string_view file) {
   if (quiet_) return;
   clear();
   for (const libchar::Warning& warning : warnings.list())
-    say(with_flags(libchar::one_line(warning, file)));
+    say(with_flags(libchar::one_line(warning, file, colours(STDERR_FILENO))));
 }
 
 void Terminal::note(const std::string& line) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libchar/core/progress.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/core/warnings.hpp"
 
 namespace sensorchar {
@@ -39,12 +40,14 @@ int stop_signal();
 std::optional<std::size_t> columns_of_stdout();
 /// The same for tables: 0, any width, where there is none.
 std::size_t table_width();
+/// Of a text that is printed there.
+libchar::TextLook text_look();
 
 /// Writes a result to stdout and checks that it went there. Throws Error(output), or StdoutClosed.
 void print(std::string_view text);
 
 /// The same for a text that is read: options of the library are named by their flags, lines are
-/// wrapped between words to the width of the terminal, and statuses are coloured there.
+/// wrapped between words to the width of the terminal.
 void print_text(const std::string& text);
 
 /// One message on stderr, a newline added. Lines coming from files must have gone through

@@ -37,6 +37,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/present.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/core/work.hpp"
 
@@ -191,7 +192,7 @@ std::span<const double> without_gaps(std::span<const double> record,
                "E0401",
                "",
                "no averaging time that was asked for fits the record of " +
-                   significant(static_cast<double>(curve.samples) * curve.dt_s, 4) + " s",
+                   duration_text(static_cast<double>(curve.samples) * curve.dt_s),
                "",
                ""});
 }

@@ -9,7 +9,7 @@
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/family_dof.hpp"
 #include "libchar/core/chi_square.hpp"
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -27,8 +27,8 @@ void note_total_bias(AllanCurve& curve, const Mixture& theta) {
   const double share =
       curve.points.back().tau_s / (static_cast<double>(curve.samples) * curve.dt_s);
   curve.notes.push_back(
-      "the total variance is low by up to " + significant(100 * (walk ? 0.75 : 0.481) * share, 2) +
-      " % at the longest averaging time (not corrected); its degrees of freedom are approximate");
+      "the total variance is low by up to " + percent_text((walk ? 0.75 : 0.481) * share) +
+      " at the longest averaging time (not corrected); its degrees of freedom are approximate");
 }
 
 void take_bias_out(AllanPoint& point, double bias) {
@@ -41,7 +41,7 @@ void note_bias(AllanCurve& curve) {
   for (const AllanPoint& point : curve.points) least = std::min(least, point.bias);
   if (least < 1)
     curve.notes.push_back("the variances are divided by their expected bias, down to " +
-                          significant(least, 3) + " (SP 1065, for the noise that is there)");
+                          brief_text(least, 3) + " (SP 1065, for the noise that is there)");
 }
 
 }  // namespace

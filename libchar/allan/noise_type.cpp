@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -129,9 +129,9 @@ std::string noise_types_text(std::span<const NoiseType> types) {
   for (std::size_t i = 0, end = 0; i < types.size(); i = end) {
     while (end < types.size() && types[end].alpha == types[i].alpha) ++end;
     text += (text.empty() ? "" : ", ") + std::string(noise_type_name(types[i].alpha));
-    text += end == i + 1 ? " at " + significant(types[i].tau_s, 4) + " s"
-                         : " from " + significant(types[i].tau_s, 4) + " s to " +
-                               significant(types[end - 1].tau_s, 4) + " s";
+    text += end == i + 1 ? " at " + duration_text(types[i].tau_s)
+                         : " from " + duration_text(types[i].tau_s) + " to " +
+                               duration_text(types[end - 1].tau_s);
   }
   return text;
 }

@@ -10,15 +10,9 @@
 namespace libchar {
 namespace {
 
-std::string percent(double share) {
-  return std::isnan(share) ? "–" : significant_or_dash(100 * share, 3) + " %";
-}
-
 std::string gap_text(double gap) {
   if (std::isnan(gap)) return "–";
-  if (gap <= 0) return "on the front";
-  return gap < 10 ? fmt::format("{} above", percent(gap))
-                  : fmt::format("{:.0f} % above", 100 * gap);
+  return gap <= 0 ? "on the front" : excess_text(gap) + (gap < 1 ? " above" : "");
 }
 
 std::string bytes_cell(const std::optional<double>& bytes) {
@@ -33,7 +27,7 @@ BenchSection machine_section(const BenchReport& report) {
       fmt::format("{}, {} processors, {} GiB, {}; {} of this run, {} of processor time; seed {}{}.",
                   m.processor,
                   m.cores,
-                  significant_or_dash(m.memory_gib, 3),
+                  brief_text(m.memory_gib, 3),
                   m.system,
                   duration_text(m.wall_s),
                   duration_text(m.cpu_s),
@@ -81,12 +75,12 @@ BenchSection section_of(const CharacterizationBench& bench) {
     truth += fmt::format("{} = {} (bound {}), ",
                          kTermNames[static_cast<std::size_t>(term.term)].letter,
                          number_text(term.truth, 3),
-                         percent(term.bound / term.truth));
+                         percent_text(term.bound / term.truth));
   out.sentences = {fmt::format("{}{} simulated records of {} samples at {} Hz.",
                                truth,
                                bench.records,
                                count_text(bench.signal.samples),
-                               significant_or_dash(bench.signal.rate_hz, 4))};
+                               brief_text(bench.signal.rate_hz, 4))};
   out.sentences.insert(out.sentences.end(), bench.notes.begin(), bench.notes.end());
   out.heads = {"Method"};
   for (const TermAccuracy& term : bench.methods.front().terms)
@@ -107,7 +101,7 @@ BenchSection section_of(const CharacterizationBench& bench) {
     std::vector<std::string> row = {method->name};
     for (std::size_t t = 0; t < method->terms.size(); ++t) row.push_back(term_cell(*method, t));
     row.push_back(coverage_cell(*method));
-    row.push_back(method->false_terms.count == 0 ? "–" : percent(method->false_terms.value));
+    row.push_back(method->false_terms.count == 0 ? "–" : percent_text(method->false_terms.value));
     row.push_back(figure_text(method->ns_per_sample));
     row.push_back(figure_text(method->time_ratio));
     row.push_back(bytes_cell(method->bytes_per_sample));
@@ -204,14 +198,8 @@ BenchSection over_all(const FusionBench& bench) {
   return out;
 }
 
-std::string bytes_text(double bytes) {
-  if (bytes < 1e4) return significant_or_dash(bytes, 3) + " B";
-  return bytes < 1e7 ? significant_or_dash(bytes / 1e3, 3) + " kB"
-                     : significant_or_dash(bytes / 1e6, 3) + " MB";
-}
-
 std::string at_text(const std::string& over, double x) {
-  return over == "samples" ? number_text(x, 3) : significant_or_dash(x, 6);
+  return over == "samples" ? number_text(x, 3) : brief_text(x, 6);
 }
 
 /// Growth over one quantity: a column a point of the smallest, a middle and the largest.
@@ -228,11 +216,12 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
     const auto cell = [&](const ScalingPoint& p) {
       return fmt::format("{}: {} {}", at_text(over, p.x), figure_text(p.cost), series.unit);
     };
-    std::vector<std::string> row = {series.name,
-                                    cell(least),
-                                    cell(most),
-                                    most.bytes ? bytes_text(*most.bytes) : "–",
-                                    figure_text(series.exponent, 3)};
+    std::vector<std::string> row = {
+        series.name,
+        cell(least),
+        cell(most),
+        most.bytes ? bytes_text(static_cast<std::uint64_t>(*most.bytes)) : "–",
+        figure_text(series.exponent, 3)};
     if (sensors)
       row.push_back(!series.keeps_up_to          ? "–"
                     : *series.keeps_up_to >= 1e6 ? "10⁶ and more"
@@ -280,7 +269,7 @@ BenchSection records_section(const DesignBench& bench) {
   BenchSection out;
   out.title = "Design: how long a record";
   out.sentences = {fmt::format("Each coefficient to {} of itself (one standard deviation).",
-                               percent(bench.options.share))};
+                               percent_text(bench.options.share))};
   out.heads = {"Model", "Coefficient", "Record", "Samples", "Simulated, %"};
   for (const RecordNeeded& row : bench.records)
     out.rows.push_back(

@@ -10,8 +10,9 @@
 
 #include "libchar/characterize/detail/channel_stages.hpp"
 #include "libchar/characterize/detail/still.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 
 namespace libchar {
 namespace {
@@ -130,8 +131,7 @@ void check_reached(const Stretch& stretch, const LogInfo& log) {
        "E0704",
        log.file,
        "the still stretch ends after the log",
-       fmt::format(
-           "{} s, the log ends at {} s", significant(stretch.to_s, 6), significant(end_s, 6)),
+       fmt::format("{} s, the log ends at {} s", brief_text(stretch.to_s, 6), brief_text(end_s, 6)),
        ""});
 }
 

@@ -12,9 +12,8 @@
 #include <cctype>
 #include <cmath>
 
-#include "libchar/characterize/verdict.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
@@ -148,8 +147,8 @@ void add_remarks(const ReportedChannel& a, const ReportedChannel& b, ComparedCha
   }
   remark_if(std::abs(a.rate_hz - b.rate_hz) > 0.01 * a.rate_hz,
             "Sampling rate, Hz",
-            significant(a.rate_hz, 6),
-            significant(b.rate_hz, 6),
+            brief_text(a.rate_hz, 6),
+            brief_text(b.rate_hz, 6),
             out);
   const bool bands =
       a.band.whole != b.band.whole || std::abs(std::log(a.band.top_hz / b.band.top_hz)) > 0.4;

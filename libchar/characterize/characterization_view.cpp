@@ -7,6 +7,7 @@
 
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/characterize/detail/summary.hpp"
 #include "libchar/characterize/limits.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
@@ -171,9 +172,11 @@ ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& 
   out.unit = usual_spelling(channel.channel.unit);
   out.shown_unit = shown_unit(out.unit);
   out.trace_unit = shown_unit(usual_spelling(channel.trace_unit));
-  out.summary = summary_of(channel, out.unit);
+  out.judgement = judge(channel);
+  out.summary = summary_sentence(channel, out.judgement, out.unit);
   out.marks = trace_marks(channel, out.shown_unit);
-  out.cautions = cautions(channel);
+  for (const Objection& objection : out.judgement.objections)
+    if (!objection.sentence.empty()) out.cautions.push_back(objection.sentence);
   out.allan_minimum = allan_minimum(channel.allan);
   out.draws_allan = stands_on_log_axes(channel.allan);
   out.draws_spectrum = stands_on_log_axes(channel.spectrum);
@@ -215,7 +218,7 @@ void choose_details(std::vector<ChannelView>& channels) {
   for (ChannelView& channel : channels) worst_first.push_back(&channel);
   std::stable_sort(
       worst_first.begin(), worst_first.end(), [](const ChannelView* a, const ChannelView* b) {
-        return a->summary.rating > b->summary.rating;
+        return a->judgement.rating > b->judgement.rating;
       });
   for (std::size_t k = kMostInDetail; k < worst_first.size(); ++k)
     worst_first[k]->in_detail = false;
@@ -226,7 +229,6 @@ void choose_details(std::vector<ChannelView>& channels) {
 CharacterizationView characterization_view(const Characterization& result) {
   CharacterizationView out;
   out.result = &result;
-  out.verdict = verdict_of(result);
   const double rate_hz = result.log.time.rate_hz;
   if (rate_hz > 0) out.duration_s = static_cast<double>(result.log.samples) / rate_hz;
   Factors factors;
@@ -234,8 +236,12 @@ CharacterizationView characterization_view(const Characterization& result) {
     out.channels.push_back(channel_view(channel, rate_hz, factors));
     if (result.limits) out.channels.back().data_sheet = data_sheet_curve(channel, *result.limits);
   }
-  for (const ChannelView& channel : out.channels)
-    out.rating = std::max(out.rating, channel.summary.rating);
+  std::vector<Judgement> judged;
+  for (const ChannelView& channel : out.channels) {
+    judged.push_back(channel.judgement);
+    out.rating = std::max(out.rating, channel.judgement.rating);
+  }
+  out.verdict = verdict_of(result, judged);
   choose_details(out.channels);
   out.groups = groups_of(out.channels);
   return out;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/model_curve.hpp"
-#include "libchar/characterize/summary.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/export/consumers.hpp"
 
@@ -46,10 +46,11 @@ struct ChannelGroup {
 
 struct ChannelView {
   const ChannelResult* result = nullptr;
-  std::string unit;              ///< in its usual spelling, "m/s²"; "" where none is stated
-  std::string shown_unit;        ///< in texts: "U" where none is stated, "" for a ratio
-  std::string trace_unit;        ///< the same of the trace's
-  ChannelSentence summary;       ///< one sentence and its colour
+  std::string unit;        ///< in its usual spelling, "m/s²"; "" where none is stated
+  std::string shown_unit;  ///< in texts: "U" where none is stated, "" for a ratio
+  std::string trace_unit;  ///< the same of the trace's
+  Judgement judgement;
+  std::string summary;           ///< one sentence
   std::vector<TraceMark> marks;  ///< in the trace
   double plain_from_s = 0;  ///< averaging time from which on the noise terms alone are the curve
   std::vector<std::string> findings;      ///< sentences with numbers

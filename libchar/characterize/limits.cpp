@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "libchar/characterize/verdict.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

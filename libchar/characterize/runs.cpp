@@ -175,8 +175,9 @@ std::string consistency_sentence(const PooledChannel& c, std::span<const Charact
                                           number_text(c.ratio, 3),
                                           probability_text(c.p, c.simulations));
   if (c.consistent)
-    return fmt::format(
-        "One set of coefficients describes all {} runs ({}).", c.runs.size(), figures);
+    return fmt::format("One set of coefficients describes {} ({}).",
+                       c.runs.size() == 2 ? "both runs" : fmt::format("all {} runs", c.runs.size()),
+                       figures);
   const std::string named = files_of(c, runs);
   return fmt::format(
       "The runs do not have one set of coefficients ({}); {}. The common ones are a mean of unlike "

@@ -11,9 +11,9 @@
 
 #include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/characterize/verdict.hpp"
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 

@@ -23,8 +23,8 @@ std::string shortest_yaml(double value) {
   return text;
 }
 
-std::string significant(double value, int digits) {
-  return fmt::format("{:.{}g}", value, digits);
+double rounded(double value, int digits) {
+  return parse_double(fmt::format("{:.{}e}", value, digits - 1)).value_or(value);
 }
 
 std::optional<double> parse_double(std::string_view text) {

@@ -1,5 +1,5 @@
 #pragma once
-// Decimals that read back to the same double, and shorter ones.
+// Decimals that read back to the same double. Those that people read are made by core/readable.hpp.
 
 #include <optional>
 #include <string>
@@ -14,8 +14,8 @@ std::string shortest(double value);
 /// "1e-05" for a string.
 std::string shortest_yaml(double value);
 
-/// `digits` significant digits ("0.0123", "1.23e-05").
-std::string significant(double value, int digits);
+/// To so many significant digits; what is not finite as it is.
+double rounded(double value, int digits);
 
 /// The whole text as one finite double (std::from_chars rules: no leading '+' or blanks, no
 /// locale), else nothing.

@@ -3,13 +3,14 @@
 #include <utility>
 
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 
 namespace libchar {
 
-std::string one_line(const Problem& problem) {
+std::string one_line(const Problem& problem, bool colours) {
   std::string line;
   if (!problem.where.empty()) line += printable(problem.where) + ": ";
-  line += "error";
+  line += tinted("error", Tint::bad, colours);
   if (!problem.code.empty()) line += " " + problem.code;
   line += ": " + printable(problem.what);
   if (!problem.got.empty()) line += "; got \"" + printable(problem.got, 40) + "\"";

@@ -30,7 +30,7 @@ struct Problem {
 };
 
 /// "WHERE: error CODE: WHAT; got "GOT"; hint: HINT", on one line, control characters escaped.
-std::string one_line(const Problem& problem);
+std::string one_line(const Problem& problem, bool colours = false);
 
 class Error : public std::exception {
  public:

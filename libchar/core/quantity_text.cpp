@@ -113,24 +113,51 @@ double parse_rate_hz(std::string_view text) {
   return value;
 }
 
-Interval parse_range(std::string_view text, RangeOf what) {
-  const bool times = what == RangeOf::duration_s;
-  const std::string expected =
-      times ? "FROM..TO, from a time to a later one (10s..20min; 50.. and ..50 are open at an end)"
-            : "LOW..HIGH, from a frequency to a higher one (0.1..20, 50Hz..2kHz; 0.1.. is open "
-              "above)";
+namespace {
+
+std::string range_form(RangeOf what) {
+  switch (what) {
+    case RangeOf::duration_s:
+      return "FROM..TO, from a time to a later one (10s..20min; 50.. and ..50 are open at an end)";
+    case RangeOf::rate_hz:
+      return "LOW..HIGH, from a frequency to a higher one (0.1..20, 50Hz..2kHz; 0.1.. is open "
+             "above)";
+    case RangeOf::number:
+      return "LOW..HIGH, from a number to a larger one (0.01..100; 1.. and ..100 are open at an "
+             "end)";
+  }
+  return "";
+}
+
+Interval range_in(std::string_view text, RangeOf what) {
+  const std::string expected = range_form(what);
   const std::size_t dots = text.find("..");
   if (dots == std::string_view::npos) refuse(text, expected);
   const auto end_of = [&](std::string_view end) {
-    return times ? parse_duration_s(end) : parse_rate_hz(end);
+    return what == RangeOf::duration_s ? parse_duration_s(end)
+           : what == RangeOf::rate_hz  ? parse_rate_hz(end)
+                                       : parse_number(end);
   };
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
   const std::string_view from = text.substr(0, dots), to = text.substr(dots + 2);
   const bool open = to.empty() || to == "end";
   if (from.empty() && open) refuse(text, expected);
-  const Interval range{from.empty() ? 0 : end_of(from),
-                       open ? std::numeric_limits<double>::infinity() : end_of(to)};
+  const double lowest = what == RangeOf::number ? -kOpen : 0;
+  const Interval range{from.empty() ? lowest : end_of(from), open ? kOpen : end_of(to)};
   if (!(range.low < range.high)) refuse(text, expected);
   return range;
+}
+
+}  // namespace
+
+Interval parse_range(std::string_view text, RangeOf what, std::string_view where) {
+  try {
+    return range_in(text, what);
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    problem.where = where;
+    throw Error(problem);
+  }
 }
 
 std::uint64_t parse_bytes(std::string_view text, std::uint64_t lowest) {

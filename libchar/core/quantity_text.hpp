@@ -28,11 +28,14 @@ double parse_duration_s(std::string_view text);
 /// Hertz: "200", "200Hz", "1.5kHz", "10MHz". > 0.
 double parse_rate_hz(std::string_view text);
 
-/// What such ends are: each with units of its own ("10s..20min", "100Hz..1.5kHz").
-enum class RangeOf { duration_s, rate_hz };
+/// What such ends are, each with units of its own ("10s..20min", "100Hz..1.5kHz"), or numbers without.
+enum class RangeOf { duration_s, rate_hz, number };
 
-/// FROM..TO, FROM < TO. An end that is left out is open: 0 or infinity; `end` says so of the last ("50..", "..50", "50..end").
-Interval parse_range(std::string_view text, RangeOf what = RangeOf::duration_s);
+/// FROM..TO, FROM < TO: the one grammar of ranges. An end that is left out is open: 0 (of numbers -infinity) or infinity; `end` says so
+/// of the last ("50..", "..50", "50..end"). `where`: the option, for the message.
+Interval parse_range(std::string_view text,
+                     RangeOf what = RangeOf::duration_s,
+                     std::string_view where = "");
 
 /// Bytes: "4096", "64k", "4MiB", "2GB" (k, M, G alone are powers of 1024, like KiB, MiB, GiB; kB,
 /// MB, GB of 1000). Not below `lowest`: a bare 10 is rather a forgotten unit.

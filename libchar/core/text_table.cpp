@@ -65,10 +65,21 @@ Rows columns(const Rows& rows, std::size_t first, std::size_t last) {
 
 }  // namespace
 
+std::string tinted(std::string_view word, Tint tint, bool colours) {
+  constexpr const char* kColours[] = {"\x1b[32m", "\x1b[33m", "\x1b[31m", "\x1b[2m"};
+  if (!colours) return std::string(word);
+  return kColours[static_cast<std::size_t>(tint)] + std::string(word) + "\x1b[0m";
+}
+
 std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  }));
+  std::size_t places = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '\x1b')
+      at = std::min(text.find('m', at), text.size());
+    else if ((static_cast<unsigned char>(text[at]) & 0xC0U) != 0x80U)
+      ++places;
+  }
+  return places;
 }
 
 std::string wrapped(std::string_view text, std::size_t width, std::string_view indent) {

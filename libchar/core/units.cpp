@@ -175,20 +175,19 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
   if (!unit) return {};
   const double si = unit->to_si;
   const double root2 = std::numbers::sqrt2, hour = 3600, root_hour = 60;
+  const double floor_of_b = std::sqrt(2 * std::numbers::ln2 / std::numbers::pi);
   if (unit->quantity == Quantity::angular_rate) {
     const double deg = si / kDegree;  // channel unit -> deg/s
     if (term == "white_noise")
       return {{deg * root_hour, "deg/√h", "angle random walk"},
-              {deg * root2, "deg/s/√Hz", "noise density, one-sided"},
-              {si, "rad/s/√Hz", "noise density, two-sided (Kalibr and kin)"}};
+              {deg * root2, "deg/s/√Hz", "noise density", Reading::one_sided},
+              {si, "rad/s/√Hz", "noise density of Kalibr and kin", Reading::two_sided}};
     if (term == "bias_instability")
       return {{deg * hour, "deg/h", "bias instability B"},
-              {deg * hour * std::sqrt(2 * std::numbers::ln2 / std::numbers::pi),
-               "deg/h",
-               "flicker floor 0.664·B"}};
+              {deg * hour * floor_of_b, "deg/h", "0.664·B", Reading::floor}};
     if (term == "random_walk")
       return {{deg * hour * root_hour, "deg/h/√h", "rate random walk"},
-              {si, "rad/s²/√Hz", "bias random walk (Kalibr and kin)"}};
+              {si, "rad/s²/√Hz", "bias random walk of Kalibr and kin", Reading::two_sided}};
     if (term == "quantization") return {{deg * hour, "arcsec", "quantization (angle)"}};
     if (term == "rate_ramp") return {{deg * hour * hour, "deg/h/h", "rate ramp"}};
   }
@@ -196,24 +195,20 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
     const double g = si / kGravity;
     if (term == "white_noise")
       return {{si * root_hour, "m/s/√h", "velocity random walk"},
-              {g * 1e6 * root2, "µg/√Hz", "noise density, one-sided"},
-              {si, "m/s²/√Hz", "noise density, two-sided (Kalibr and kin)"}};
+              {g * 1e6 * root2, "µg/√Hz", "noise density", Reading::one_sided},
+              {si, "m/s²/√Hz", "noise density of Kalibr and kin", Reading::two_sided}};
     if (term == "bias_instability")
       return {{g * 1e6, "µg", "bias instability B"},
-              {g * 1e6 * std::sqrt(2 * std::numbers::ln2 / std::numbers::pi),
-               "µg",
-               "flicker floor 0.664·B"}};
+              {g * 1e6 * floor_of_b, "µg", "0.664·B", Reading::floor}};
     if (term == "random_walk")
       return {{g * 1e6 * root_hour, "µg/√h", "acceleration random walk"},
-              {si, "m/s³/√Hz", "bias random walk (Kalibr and kin)"}};
+              {si, "m/s³/√Hz", "bias random walk of Kalibr and kin", Reading::two_sided}};
     if (term == "quantization") return {{si, "m/s", "quantization (velocity)"}};
     if (term == "rate_ramp") return {{g * 1e6 * hour, "µg/h", "acceleration ramp"}};
   }
-  if (term == "white_noise") return {{root2, unit->symbol + "/√Hz", "noise density, one-sided"}};
-  if (term == "bias_instability")
-    return {{std::sqrt(2 * std::numbers::ln2 / std::numbers::pi),
-             unit->symbol,
-             "flicker floor 0.664·B"}};
+  if (term == "white_noise")
+    return {{root2, unit->symbol + "/√Hz", "noise density", Reading::one_sided}};
+  if (term == "bias_instability") return {{floor_of_b, unit->symbol, "0.664·B", Reading::floor}};
   return {};
 }
 

@@ -48,11 +48,20 @@ struct Unit {
 /// them; nothing for an unknown text. A numeric factor in front ("1/16.4 deg/s") is part of the unit.
 std::optional<Unit> find_unit(std::string_view text);
 
-/// A value of one noise term expressed as the field says it.
+/// What a unit alone leaves open: the sides of a density; or that it is not the term but the lowest Allan deviation of it.
+enum class Reading { plain, one_sided, two_sided, floor };
+template <>
+inline constexpr auto enum_table<Reading> = enum_words<Reading>({{Reading::plain, ""},
+                                                                 {Reading::one_sided, "one-sided"},
+                                                                 {Reading::two_sided, "two-sided"},
+                                                                 {Reading::floor, "floor"}});
+
+/// One way in which the field says a noise term.
 struct HabitualValue {
   double factor = 1;   ///< multiply the coefficient in the channel's own unit by this
   std::string symbol;  ///< "deg/√h", "µg/√Hz", "deg/h"…
-  std::string name;    ///< "angle random walk", "bias instability", "noise density (one-sided)"…
+  std::string name;    ///< "angle random walk", "bias instability B", "noise density"…
+  Reading reading = Reading::plain;
 };
 
 /// The habitual units of a term ("white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp") for a channel

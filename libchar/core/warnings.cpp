@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 
 namespace libchar {
 
@@ -51,8 +52,9 @@ std::string sentence_of(const Warning& warning) {
   return line;
 }
 
-std::string one_line(const Warning& warning, std::string_view file) {
-  return printable(file) + ": warning: " + sentence_of(warning);
+std::string one_line(const Warning& warning, std::string_view file, bool colours) {
+  return printable(file) + ": " + tinted("warning", Tint::doubtful, colours) + ": " +
+         sentence_of(warning);
 }
 
 }  // namespace libchar

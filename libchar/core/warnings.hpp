@@ -36,6 +36,6 @@ class Warnings {
 /// "3 × MESSAGE (first: line 412, line 413, line 9001)", control characters escaped.
 std::string sentence_of(const Warning& warning);
 /// "FILE: warning: 3 × MESSAGE (first: line 412, line 413, line 9001)", control characters escaped.
-std::string one_line(const Warning& warning, std::string_view file);
+std::string one_line(const Warning& warning, std::string_view file, bool colours = false);
 
 }  // namespace libchar

@@ -15,6 +15,7 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/dense.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/goodness.hpp"
 #include "libchar/fit/detail/nonnegative.hpp"
@@ -104,19 +105,19 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
     if (term.status != Status::detected || apart <= 3) continue;
     second.agrees = false;
     second.sentence += fmt::format(
-        "{}the Allan curve gives {:.4g} for {}, {:.1f} combined standard deviations from {:.4g}",
+        "{}the Allan curve gives {} for {}, {:.1f} combined standard deviations from {}",
         second.sentence.empty() ? "" : "; ",
-        *second.value[i],
+        brief_text(*second.value[i], 4),
         long_name(static_cast<Term>(i)),
         apart,
-        *term.value);
+        brief_text(*term.value, 4));
   }
   if (second.goodness.p < 1e-3) {
     // An opinion that does not describe the curve it was made from supports nothing.
     second.agrees = false;
-    second.sentence += fmt::format("{}does not describe the Allan curve itself (p = {:.2g})",
+    second.sentence += fmt::format("{}does not describe the Allan curve itself (p = {})",
                                    second.sentence.empty() ? "" : "; ",
-                                   second.goodness.p);
+                                   brief_text(second.goodness.p, 2));
   } else if (second.agrees) {
     second.sentence = "agrees";
   }

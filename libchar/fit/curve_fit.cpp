@@ -31,6 +31,7 @@
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/curve_likelihood.hpp"
 #include "libchar/fit/detail/goodness.hpp"
@@ -250,10 +251,10 @@ void say_what_intervals_mean(const Judge& judge, double scatter, NoiseFit& fit) 
     case Scatter::estimated:
       fit.sentences.push_back(
           fmt::format("The curve states no uncertainty: it was taken as equal relative error at "
-                      "every point, {:.2g} % of the ordinate from the scatter about the fit. "
+                      "every point, {} of the ordinate from the scatter about the fit. "
                       "The intervals say how well the drawn curve fixes the coefficients, not how "
                       "well the record behind it did.",
-                      100 * scatter));
+                      percent_text(scatter)));
       return;
   }
 }
@@ -368,9 +369,9 @@ void report_goodness(const CurveJudgement& found, NoiseFit& fit) {
   say_what_intervals_mean(found.judge, std::sqrt(found.mean_square) / 2, fit);
   if (!estimated && fit.goodness.p < 1e-3) {
     fit.sentences.push_back(
-        fmt::format("The points scatter {:.2g} times more about the model than their uncertainty "
+        fmt::format("The points scatter {} times more about the model than their uncertainty "
                     "says; the intervals are widened by that.",
-                    std::sqrt(found.scale)));
+                    brief_text(std::sqrt(found.scale), 2)));
   }
 }
 
@@ -505,13 +506,12 @@ void report_left_out(const DigitisedCurve& curve, std::size_t left_out, NoiseFit
       {"band",
        "the noise terms do not describe the whole curve within its uncertainty",
        curve.is_allan
-           ? fmt::format(
-                 "coefficients from averaging times of {:.4g} s on, {} of {} points left out",
-                 edge,
-                 left_out,
-                 curve.x.size())
-           : fmt::format("coefficients from below {:.4g} Hz, {} of {} points left out",
-                         edge,
+           ? fmt::format("coefficients from averaging times of {} on, {} of {} points left out",
+                         duration_text(edge),
+                         left_out,
+                         curve.x.size())
+           : fmt::format("coefficients from below {} Hz, {} of {} points left out",
+                         brief_text(edge, 4),
                          left_out,
                          curve.x.size()),
        left_out});

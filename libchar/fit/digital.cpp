@@ -125,9 +125,9 @@ std::string with_unit(double value, std::string_view unit) {
 void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view unit) {
   for (const Rail& rail : faults.rails)
     faults.sentences.push_back(
-        fmt::format("{:.2g} % of the samples stand at the {} value, {}: clipped, and the noise "
+        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
                     "comes out too small.",
-                    100 * rail.share,
+                    percent_text(rail.share),
                     rail.high ? "largest" : "smallest",
                     with_unit(rail.value, unit)));
   if (faults.held)

@@ -15,6 +15,7 @@
 #include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/present.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/allan_fit.hpp"
 #include "libchar/fit/detail/band.hpp"
 #include "libchar/fit/detail/band_report.hpp"
@@ -254,11 +255,11 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
       });
   fit.sentences.push_back(fmt::format(
       "The model does not describe the record within its statistical accuracy "
-      "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {:.3g} Hz), in no band: "
+      "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {} Hz), in no band: "
       "the intervals are widened by its scatter, and no coefficient is borne out.",
       fit.goodness.chi2,
       fit.goodness.dof,
-      worst->frequency_hz));
+      brief_text(worst->frequency_hz)));
 }
 
 /// After the decisions: the process that was needed gets its intervals, one that is as likely a sentence.

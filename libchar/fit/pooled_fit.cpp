@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/scoring.hpp"
 
@@ -95,9 +96,9 @@ void without_bounds(NoiseFit& fit) {
     if (term.status != Status::detected || !(term.relative_sd > kWideAbove)) continue;
     term.status = Status::undetermined;
     fit.sentences.push_back(
-        fmt::format("The runs are too few or too short for {}: it is known to {:.0f} % (1 sd).",
+        fmt::format("The runs are too few or too short for {}: it is known to {} (1 sd).",
                     long_name(static_cast<Term>(t)),
-                    100 * term.relative_sd));
+                    percent_text(term.relative_sd)));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/moments.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 
@@ -35,7 +36,7 @@ SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count)
   if (judge_spikes(count) == SpikeVerdict::spikes)
     answer.remedy = {
         "spikes",
-        fmt::format("kurtosis of differences {:.3g} > {:.3g}", kurtosis, alarm),
+        fmt::format("kurtosis of differences {} > {}", brief_text(kurtosis), brief_text(alarm)),
         fmt::format("{} sample{} left out", count.left_out, count.left_out == 1 ? "" : "s"),
         count.left_out};
   return answer;

@@ -23,6 +23,7 @@
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/distributions.hpp"
 #include "libchar/core/median.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -113,9 +114,9 @@ std::string spike_sentence(const SpikeCount& count) {
   switch (judge_spikes(count)) {
     case SpikeVerdict::too_many:
       return fmt::format(
-          "{:.2g} % of the samples stand out of their neighbours: too many for spikes (at most 1 "
+          "{} of the samples stand out of their neighbours: too many for spikes (at most 1 "
           "%), and all were kept.",
-          100 * static_cast<double>(count.left_out) / static_cast<double>(count.samples));
+          percent_text(static_cast<double>(count.left_out) / static_cast<double>(count.samples)));
     case SpikeVerdict::heavy_tails:
       return fmt::format(
           "{} sample{} beyond six standard deviations, like the tails of heavy-tailed noise, or a "

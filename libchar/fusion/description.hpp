@@ -37,6 +37,7 @@ struct Description {
   Needs needs = {};
   /// of one learning instant; "" when nothing is learnt
   std::string_view learning_complexity = "";
+  bool as_published = false;  ///< in the source's own form, beside a more robust one
 };
 
 }  // namespace libchar::fusion

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -66,7 +66,7 @@ void LearntExchange::needs_same_rate(std::string_view what) const {
   throw Error({ErrorKind::input,
                "E0867",
                "",
-               "the log's rate is " + significant(rate_ratio_, 4) +
+               "the log's rate is " + brief_text(rate_ratio_, 4) +
                    " times that of the log where this was learnt: " + std::string(what) +
                    " would mean something else",
                "",

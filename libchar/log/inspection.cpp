@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 
@@ -39,18 +39,6 @@ class Meters final : public BlockSink {
   tbb::task_arena arena_;
   std::vector<QualityMeter> meters_;
 };
-
-std::string duration(double seconds) {
-  const std::string text =
-      seconds >= 100 ? fmt::format("{:.0f}", seconds) : significant(seconds, 4);
-  return text + " s";
-}
-
-std::string small_time(double seconds) {
-  if (seconds < 1e-6) return fmt::format("{:.3g} ns", seconds * 1e9);
-  if (seconds < 1e-3) return fmt::format("{:.2g} us", seconds * 1e6);
-  return seconds < 1 ? fmt::format("{:.2g} ms", seconds * 1e3) : fmt::format("{:.2g} s", seconds);
-}
 
 }  // namespace
 
@@ -99,10 +87,10 @@ std::string summary_line(const LogInfo& info) {
   std::string line =
       fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
   if (time.rate_hz > 0) {
-    const bool usual = time.rate_hz >= 0.1 && time.rate_hz < 1e6;
-    line += usual ? fmt::format("{:.3f} Hz", time.rate_hz) : significant(time.rate_hz, 6) + " Hz";
-    line += time.from_stamps ? fmt::format(" (jitter {})", small_time(time.jitter_s)) : " (given)";
-    line += ", " + duration(static_cast<double>(info.samples) / time.rate_hz);
+    line += brief_text(time.rate_hz, 6) + " Hz";
+    line += time.from_stamps ? fmt::format(" (jitter {})", duration_text(time.jitter_s, 2))
+                             : " (given)";
+    line += ", " + duration_text(static_cast<double>(info.samples) / time.rate_hz);
   } else {
     line += plural(info.samples, "sample") + ", rate unknown";
   }

@@ -15,6 +15,7 @@
 #include "libchar/core/lanes.hpp"
 #include "libchar/core/median.hpp"
 #include "libchar/core/present.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 
 namespace libchar {
@@ -326,9 +327,9 @@ class CounterWatch {
   std::string sentence() const {
     if (!possible_ || steps_ < kLeastSteps) return "";
     if (usual_ != 0 && static_cast<double>(same_) >= kMost * steps())
-      return fmt::format("{} by {:.4g} with {} sample: a counter or a clock, not a measurement",
+      return fmt::format("{} by {} with {} sample: a counter or a clock, not a measurement",
                          usual_ > 0 ? "rises" : "falls",
-                         std::fabs(usual_),
+                         brief_text(std::fabs(usual_), 4),
                          same_ == steps_ ? "every" : "nearly every");
     const bool rises = up_.count > down_.count;
     const Direction &there = rises ? up_ : down_, &back = rises ? down_ : up_;
@@ -439,8 +440,8 @@ std::optional<double> grid_step(std::vector<double> values) {
 // uncertainty.
 double tidy(double step) {
   for (int digits = 1; digits < 16; ++digits) {
-    const auto rounded = parse_double(fmt::format("{:.{}e}", step, digits - 1));
-    if (rounded && std::fabs(*rounded - step) <= 1e-7 * step) return *rounded;
+    const double shorter = rounded(step, digits);
+    if (std::fabs(shorter - step) <= 1e-7 * step) return shorter;
   }
   return step;
 }
@@ -644,9 +645,9 @@ void suggest(ChannelQuality& q) {
   auto& s = q.suggestions;
   const double share = q.samples > 0 ? 1.0 / static_cast<double>(q.samples) : 0;
   if (q.beyond > 0)
-    s.push_back(fmt::format("{} beyond {:g} in magnitude: no measurement, taken as missing",
+    s.push_back(fmt::format("{} beyond {} in magnitude: no measurement, taken as missing",
                             plural(q.beyond, "sample"),
-                            kLargestSample));
+                            brief_text(kLargestSample)));
   if (q.samples == 0) {
     if (q.beyond > 0) return;
     s.emplace_back("no value at all: check that the channel is switched on");
@@ -662,32 +663,32 @@ void suggest(ChannelQuality& q) {
   else if (q.samples >= 16 && q.resolution && q.standard_deviation < 0.5 * *q.resolution &&
            q.distinct_values > 1)
     s.push_back(
-        fmt::format("standard deviation is {:.2g} of the resolution: quantization hides the noise, "
+        fmt::format("standard deviation is {} of the resolution: quantization hides the noise, "
                     "record with more gain",
-                    q.standard_deviation / *q.resolution));
+                    brief_text(q.standard_deviation / *q.resolution, 2)));
   if (q.saturated > 0 && q.distinct_values > 3)
     s.push_back(
-        fmt::format("{} samples ({:.2g} %) stand at the end of the range ({:g} or {:g}): "
+        fmt::format("{} samples ({}) stand at the end of the range ({} or {}): "
                     "saturated, use a larger full scale",
                     q.saturated,
-                    100 * static_cast<double>(q.saturated) * share,
-                    q.minimum,
-                    q.maximum));
+                    percent_text(static_cast<double>(q.saturated) * share),
+                    brief_text(q.minimum, 6),
+                    brief_text(q.maximum, 6)));
   if (q.longest_stuck >= 100 && q.distinct_values > 16)
     s.push_back(
         fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck));
   if (q.samples >= 1000 && q.difference_kurtosis > 10)
     s.push_back(
-        fmt::format("kurtosis of differences {:.3g} (3 for Gaussian noise): spikes or movement, "
+        fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, "
                     "look for outliers",
-                    q.difference_kurtosis));
+                    brief_text(q.difference_kurtosis)));
   if (q.float32 && q.samples >= 16 && q.distinct_values > 16 && q.standard_deviation > 0 &&
       q.float32_step > 0.5 * q.standard_deviation)
     s.push_back(
-        fmt::format("32-bit floats step by {:.3g} here, which is {:.2g} of the standard deviation: "
+        fmt::format("32-bit floats step by {} here, which is {} of the standard deviation: "
                     "subtract the offset before storing",
-                    q.float32_step,
-                    q.float32_step / q.standard_deviation));
+                    brief_text(q.float32_step),
+                    brief_text(q.float32_step / q.standard_deviation, 2)));
 }
 
 }  // namespace

@@ -18,7 +18,9 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/log_files.hpp"
 #include "libchar/core/pattern.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/spelling.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/core/units.hpp"
@@ -191,7 +193,7 @@ std::vector<double> scale_channels(std::vector<Channel>& channels,
     channel.integer = false;
     if (notes != nullptr)
       (*notes)[fmt::format("one count is {}{}{}",
-                           significant(factors[c], 6),
+                           brief_text(factors[c], 6),
                            channel.unit.empty() ? "" : " ",
                            printable(channel.unit))]
           .push_back(printable(channel.name));

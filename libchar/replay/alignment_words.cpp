@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 
 namespace libchar {
@@ -16,7 +15,7 @@ constexpr std::string_view kPartNames[] = {"offset", "gain", "cross", "delay", "
 
 // "0.31 ± 0.02": the digits that the error leaves.
 std::string with_error(double value, double error, double scale = 1) {
-  if (!std::isfinite(error)) return value == 0 ? "–" : significant(scale * value, 3);
+  if (!std::isfinite(error)) return value == 0 ? "–" : brief_text(scale * value, 3);
   const double size = scale * error;
   const int decimals =
       size > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(size))), 0, 9) : 3;
@@ -57,7 +56,7 @@ WordTable budget_table(const ReplayResult& r, const AlignmentResult& a) {
   for (const std::string_view part : kPartNames) out.head.emplace_back(part);
   for (std::size_t k = 0; k < a.budget.channels.size(); ++k) {
     const fusion::ChannelBudget& c = a.budget.channels[k];
-    std::vector<std::string> row = {r.sensors[a.budgeted[k]].name, significant_or_dash(c.rms, 4)};
+    std::vector<std::string> row = {r.sensors[a.budgeted[k]].name, brief_text(c.rms, 4)};
     for (const fusion::PartShare& part : c.parts) row.push_back(share_text(part));
     out.rows.push_back(std::move(row));
   }
@@ -71,8 +70,8 @@ WordTable budget_table(const ReplayResult& r, const AlignmentResult& a) {
 
 std::string how(const AlignmentResult& a) {
   return fmt::format("Alignment learnt from {} to {} s ({} instants; {} is the truth), {}.",
-                     significant(a.window.from_s, 6),
-                     significant(a.window.to_s, 6),
+                     brief_text(a.window.from_s, 6),
+                     brief_text(a.window.to_s, 6),
                      a.learnt.instants,
                      a.by_reference ? "the reference" : "the mean of the sensors",
                      a.applied ? "taken out of the sensors before they are fused"
@@ -87,9 +86,9 @@ std::string effect(const ReplayResult& r, const AlignmentResult& a) {
       "{}: {}{} as recorded, {}{} aligned (× {:.3f}), on {} instants with samples "
       "of all sensors below their limits.",
       a.by_reference ? "RMSE of the mean" : "Leave-one-out RMS of the mean",
-      significant(a.budget.before, 4),
+      brief_text(a.budget.before, 4),
       unit,
-      significant(a.budget.after, 4),
+      brief_text(a.budget.after, 4),
       unit,
       a.budget.after / a.budget.before,
       a.budget.instants);

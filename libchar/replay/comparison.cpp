@@ -10,10 +10,11 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/median.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/replay/detail/likeness.hpp"
 
 namespace libchar {
@@ -55,7 +56,7 @@ double order(const AlgorithmSummary* one) {
 
 std::string best_of(const ReplaySummary& r) {
   const AlgorithmSummary* best = r.find(r.best);
-  return best == nullptr ? "none" : fmt::format("{} ({})", best->label, significant(best->rmse, 5));
+  return best == nullptr ? "none" : fmt::format("{} ({})", best->label, brief_text(best->rmse, 5));
 }
 
 std::string comparison_verdict(const Comparison& c) {

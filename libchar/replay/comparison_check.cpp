@@ -7,6 +7,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/spelling.hpp"
 
 namespace libchar {
@@ -34,7 +35,7 @@ double value_of(const AlgorithmSummary* one, const Metric& metric) {
 }
 
 std::string number(double value, bool share) {
-  return share ? fmt::format("{} %", significant(100 * value, 4)) : significant(value, 5);
+  return share ? fmt::format("{} %", brief_text(100 * value, 4)) : brief_text(value, 5);
 }
 
 // Empty: it holds.
@@ -56,14 +57,14 @@ std::string failure(const ComparedAlgorithm& row,
                               row.label,
                               number(a, true),
                               number(b, true),
-                              significant(100 * (b - a), 3),
+                              brief_text(100 * (b - a), 3),
                               allowed)
                 : fmt::format("{}: {} {} in A, {} in B: {} more, {} % is allowed",
                               row.label,
                               metric.name,
                               number(a, false),
                               number(b, false),
-                              a > 0 ? significant(100 * (b / a - 1), 3) + " %" : "from nothing",
+                              a > 0 ? brief_text(100 * (b / a - 1), 3) + " %" : "from nothing",
                               allowed);
 }
 

@@ -7,9 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/spelling.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fusion/alignment_learning.hpp"
@@ -101,7 +102,7 @@ class Fusing {
                   learnt.file,
                   "it was learnt on means over the intervals of a slow reference, which are not "
                   "applied to a log yet",
-                  fmt::format("{} s", significant(*learnt.average_s, 6)));
+                  duration_text(*learnt.average_s));
     find_entry();
     find_channels();
     describe_scene();
@@ -312,16 +313,16 @@ void Fusing::check_rate() {
                 fmt::format("the log's rate is {} times that of the log where this was learnt: the "
                             "noise of a sample, which {} weighs against the drifts, is not known "
                             "there",
-                            significant(ratio, 4),
+                            brief_text(ratio, 4),
                             algorithm_.label),
-                fmt::format("{} Hz", significant(instants_->info().rate_hz, 6)),
+                fmt::format("{} Hz", brief_text(instants_->info().rate_hz, 6)),
                 "learn on a log of this rate, or choose another algorithm");
   result_.warnings.add("another_rate",
                        "the log's rate is not that of the log where this was learnt: delays and "
                        "times are kept, what counts samples (memories, noise of a sample) is not",
                        fmt::format("{} Hz, learnt at {} Hz",
-                                   significant(instants_->info().rate_hz, 6),
-                                   significant(learnt_.rate_hz, 6)));
+                                   brief_text(instants_->info().rate_hz, 6),
+                                   brief_text(learnt_.rate_hz, 6)));
 }
 
 void Fusing::prepare_instants() {
@@ -340,7 +341,7 @@ void Fusing::prepare_instants() {
                     log_,
                     fmt::format("at this rate a sensor's delay is more than {} samples",
                                 fusion::kMostDelay),
-                    significant(channel.delay, 4));
+                    brief_text(channel.delay, 4));
     instants_->set_alignment(&alignment_);
   }
   if (const std::string& unit = learnt_.inputs[0].unit; scene_.tilt)

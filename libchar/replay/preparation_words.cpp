@@ -4,25 +4,25 @@
 
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/replay/detail/band_filter.hpp"
 
 namespace libchar {
 namespace {
 
 std::string with_unit(double value, int digits, const std::string& unit) {
-  return significant(value, digits) + (unit.empty() ? "" : " " + unit);
+  return brief_text(value, digits) + (unit.empty() ? "" : " " + unit);
 }
 
 std::string window_words(const TimeWindow& w) {
-  return fmt::format("from {} to {} s", significant(w.from_s, 6), significant(w.to_s, 6));
+  return fmt::format("from {} to {} s", brief_text(w.from_s, 6), brief_text(w.to_s, 6));
 }
 
 std::string offset_words(const ReplayResult& r, const FoundOffset& offset) {
   const std::string& unit = r.inputs[0].unit;
   const std::string interval = std::isfinite(offset.ci95.low)
                                    ? fmt::format(" (95 %: {} to {})",
-                                                 significant(offset.ci95.low, 4),
+                                                 brief_text(offset.ci95.low, 4),
                                                  with_unit(offset.ci95.high, 4, unit))
                                    : "";
   std::string out = fmt::format(
@@ -54,15 +54,15 @@ std::vector<std::string> preparation_words(const Scene& scene) {
                     p.detrend == "mean" ? "mean" : "line of least squares"));
   if (!p.filters()) return out;
   const std::string band =
-      p.to_hz > 0 ? fmt::format(" and a low-pass at {} Hz", significant(p.to_hz, 6)) : "";
-  out.push_back(fmt::format(
-      "All sensors{} go through one filter: a Butterworth high-pass of second order at "
-      "{} Hz{}, causal. Its first {} s are not learnt from and not scored; noise levels "
-      "are those behind it, and noise models are not used.",
-      reference,
-      significant(p.from_hz, 6),
-      band,
-      significant(settling_s(p), 4)));
+      p.to_hz > 0 ? fmt::format(" and a low-pass at {} Hz", brief_text(p.to_hz, 6)) : "";
+  out.push_back(
+      fmt::format("All sensors{} go through one filter: a Butterworth high-pass of second order at "
+                  "{} Hz{}, causal. Its first {} are not learnt from and not scored; noise levels "
+                  "are those behind it, and noise models are not used.",
+                  reference,
+                  brief_text(p.from_hz, 6),
+                  band,
+                  duration_text(settling_s(p))));
   return out;
 }
 

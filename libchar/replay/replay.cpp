@@ -10,8 +10,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/work.hpp"
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/replay/detail/algorithm_run.hpp"
@@ -530,7 +530,7 @@ void Replay::refuse_sizes() const {
        scene_.file,
        "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of that "
        "size cannot be squared",
-       beyond_ ? "beyond 1e100" : significant(largest_, 3),
+       beyond_ ? "beyond 1e100" : brief_text(largest_, 3),
        "give the sensors a `scale` and a `unit`"});
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/sha256.hpp"
@@ -191,7 +190,7 @@ void add_mark(std::vector<RunMark>& out, RunMark mark, double start_s, double en
 std::string fault_label(const ReplayResult& r, const SensorFault& fault) {
   const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
   return (fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name + ": " : "") +
-         std::string(name_of(fault.kind)) + (valueless ? "" : " " + significant(fault.value, 4));
+         std::string(name_of(fault.kind)) + (valueless ? "" : " " + brief_text(fault.value, 4));
 }
 
 std::vector<RunMark> marks_of(const ReplayResult& r, double end_s) {

@@ -7,6 +7,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/fusion/registry.hpp"
 
 namespace libchar {
@@ -47,11 +48,10 @@ std::vector<double> values_in(const std::string& list,
                               const std::string& where,
                               const std::string& text) {
   std::vector<double> out;
-  if (const std::size_t dots = list.find(".."); dots != std::string::npos) {
-    const auto from = parse_double(list.substr(0, dots)), to = parse_double(list.substr(dots + 2));
-    if (!from || !to || !is_whole(*from) || !is_whole(*to) || *to < *from)
-      refuse_sweep(where, text);
-    return range_values(*from, *to);
+  if (list.find("..") != std::string::npos) {
+    const Interval range = parse_range(list, RangeOf::number, where);
+    if (!is_whole(range.low) || !is_whole(range.high)) refuse_sweep(where, text);
+    return range_values(range.low, range.high);
   }
   for (std::size_t at = 0; at <= list.size();) {
     const std::size_t comma = std::min(list.find(',', at), list.size());

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/replay/ranking.hpp"
 
@@ -43,11 +42,9 @@ std::string regret_text(const ReplayResult& r, double regret) {
   const std::string optimum = "the optimum of " + optimum_of(r);
   // The best of a few filters may be the optimum itself.
   if (std::abs(regret) < 1e-9) return optimum;
-  if (regret > 1) return fmt::format("{} times {}", significant(1 + regret, 2), optimum);
-  return fmt::format("{} % {} {}",
-                     significant(std::abs(100 * regret), 2),
-                     regret >= 0 ? "above" : "below",
-                     optimum);
+  if (regret > 1) return fmt::format("{} times {}", brief_text(1 + regret), optimum);
+  return fmt::format(
+      "{} {} {}", percent_text(std::abs(regret)), regret >= 0 ? "above" : "below", optimum);
 }
 
 // "RMSE 0.0331 rad/s (95 %: 0.0329 to 0.0333), 0.1 % above the optimum of fixed weights"
@@ -58,7 +55,7 @@ std::string figures(const ReplayResult& r, const AlgorithmResult& a) {
                                 error_text(a.rmse, r.inputs[0].unit));
   if (std::isfinite(a.rmse_ci95.low) && std::isfinite(a.rmse_ci95.high))
     out += fmt::format(
-        " (95 %: {} to {})", significant(a.rmse_ci95.low, 4), significant(a.rmse_ci95.high, 4));
+        " (95 %: {} to {})", brief_text(a.rmse_ci95.low, 4), brief_text(a.rmse_ci95.high, 4));
   for (std::size_t j = 1; j < std::min(a.inputs.size(), r.inputs.size()); ++j)
     out += fmt::format(
         ", of {} {}", r.inputs[j].name, error_text(a.inputs[j].error.rmse, r.inputs[j].unit));
@@ -68,7 +65,8 @@ std::string figures(const ReplayResult& r, const AlgorithmResult& a) {
 
 std::string costs_of(const AlgorithmResult& a) {
   std::string out;
-  if (std::isfinite(a.ns_per_sample)) out += ", " + nanoseconds_text(a.ns_per_sample) + " a sample";
+  if (std::isfinite(a.ns_per_sample))
+    out += ", " + duration_text(1e-9 * a.ns_per_sample) + " a sample";
   if (a.peak_bytes) out += ", " + bytes_text(a.peak_bytes) + " of memory";
   return out;
 }
@@ -97,7 +95,7 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
       cheap->ns_per_sample < 0.8 * best.ns_per_sample)
     out += fmt::format(" Of these {} is the cheapest, {} a sample.",
                        cheap->label,
-                       nanoseconds_text(cheap->ns_per_sample));
+                       duration_text(1e-9 * cheap->ns_per_sample));
   return out;
 }
 
@@ -128,9 +126,14 @@ std::string bounds_sentence(const ReplayResult& r) {
                    ".";
 }
 
-// Whether the array is worth more than its best sensor.
-std::string sensor_sentence(const ReplayResult& r) {
-  if (!r.best_sensor || !r.best_over_sensor) return "";
+/// Whether the array is worth more than its best sensor.
+struct SensorSentence {
+  std::string text;
+  bool against_fusion = false;  ///< that sensor alone is better
+};
+
+SensorSentence sensor_sentence(const ReplayResult& r) {
+  if (!r.best_sensor || !r.best_over_sensor) return {};
   const SensorResult& sensor = r.sensors[*r.best_sensor];
   const AlgorithmResult& best = r.algorithms[*r.best];
   const double ratio = best.rmse / sensor.error.rmse;
@@ -138,26 +141,25 @@ std::string sensor_sentence(const ReplayResult& r) {
   const std::string alone = fmt::format("{}, the best single sensor ({})",
                                         sensor.name,
                                         error_text(sensor.error.rmse, r.inputs[0].unit));
-  const auto percent = [](double x) { return significant(100 * std::abs(x), 2); };
   if (ratio > 1 + kPracticalTolerance && interval.low > 1)
-    return fmt::format(
-        "Fusion does not pay here: the error of {} is {} % larger than that of {}: use that sensor "
-        "alone.",
-        best.label,
-        percent(ratio - 1),
-        alone);
+    return {fmt::format("Fusion does not pay here: the error of {} is {} larger than that of {}: "
+                        "use that sensor alone.",
+                        best.label,
+                        percent_text(ratio - 1),
+                        alone),
+            true};
   if (ratio < 1 - kPracticalTolerance && interval.high < 1)
-    return fmt::format("Fusion pays: its error is {} % (95 %: {} to {} %) below that of {}.",
-                       percent(1 - ratio),
-                       percent(1 - interval.high),
-                       percent(1 - interval.low),
-                       alone);
-  return fmt::format(
+    return {fmt::format("Fusion pays: its error is {} (95 %: {} to {}) below that of {}.",
+                        percent_text(1 - ratio),
+                        percent_text(1 - interval.high),
+                        percent_text(1 - interval.low),
+                        alone)};
+  return {fmt::format(
       "Whether fusion pays is not resolved: its error is {} times that of {} (95 %: {} to {}).",
-      significant(ratio, 3),
+      brief_text(ratio),
       alone,
-      significant(interval.low, 3),
-      significant(interval.high, 3));
+      brief_text(interval.low),
+      brief_text(interval.high))};
 }
 
 std::string offsets_sentence(const ReplayResult& r) {
@@ -165,10 +167,10 @@ std::string offsets_sentence(const ReplayResult& r) {
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && a.blind) share = std::max(share, a.blind->offset_share);
   return fmt::format(
-      "No method is recommended: {} % of the differences between the sensors (mean squares) are in "
+      "No method is recommended: {} of the differences between the sensors (mean squares) are in "
       "their means, and offsets would decide. Give the scene a stretch at rest, a reference, or "
       "sensors without offsets.",
-      significant(100 * share, 3));
+      percent_text(share, 3));
 }
 
 }  // namespace
@@ -187,16 +189,16 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   std::vector<std::string> out = {
       fmt::format("Use {}: {}{}.", best.label, figures(r, best), costs ? costs_of(best) : "")};
   if (best.availability < 0.9995)
-    out[0] += fmt::format(" It has an estimate at {} % of the instants.",
-                          significant(100 * best.availability, 3));
+    out[0] += fmt::format(" It has an estimate at {} of the instants.",
+                          percent_text(best.availability, 3));
   const auto add = [&](const std::string& sentence) {
     if (!sentence.empty()) out.push_back(sentence);
   };
-  std::string single = sensor_sentence(r);
-  if (single.starts_with("Fusion does not pay"))
-    out.insert(out.begin(), std::move(single));
+  SensorSentence single = sensor_sentence(r);
+  if (single.against_fusion)
+    out.insert(out.begin(), std::move(single.text));
   else
-    add(single);
+    add(single.text);
   add(without_reference_sentence(r, best, costs));
   add(equals_sentence(r, best, costs));
   if (r.has_reference)

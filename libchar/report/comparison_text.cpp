@@ -107,11 +107,11 @@ std::string comparison_text(const Comparison& c, std::size_t width) {
     const std::string where = side_of(row);
     if (where == "skipped in both") continue;
     rows.push_back({printable(row.label),
-                    significant_or_dash(value(row.a, &AlgorithmSummary::rmse), 5),
-                    significant_or_dash(value(row.b, &AlgorithmSummary::rmse), 5),
+                    brief_text(value(row.a, &AlgorithmSummary::rmse), 5),
+                    brief_text(value(row.b, &AlgorithmSummary::rmse), 5),
                     change_text(row.rmse_change),
-                    significant_or_dash(value(row.a, &AlgorithmSummary::ns_per_sample), 3),
-                    significant_or_dash(value(row.b, &AlgorithmSummary::ns_per_sample), 3),
+                    brief_text(value(row.a, &AlgorithmSummary::ns_per_sample), 3),
+                    brief_text(value(row.b, &AlgorithmSummary::ns_per_sample), 3),
                     change_text(row.ns_change),
                     bytes(value(row.a, &AlgorithmSummary::peak_bytes)),
                     bytes(value(row.b, &AlgorithmSummary::peak_bytes)),
@@ -148,12 +148,12 @@ std::string comparison_markdown(const Comparison& c) {
     if (where == "skipped in both") continue;
     out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(row.label),
-                       significant_or_dash(value(row.a, &AlgorithmSummary::rmse), 5),
-                       significant_or_dash(value(row.b, &AlgorithmSummary::rmse), 5),
+                       brief_text(value(row.a, &AlgorithmSummary::rmse), 5),
+                       brief_text(value(row.b, &AlgorithmSummary::rmse), 5),
                        change_text(row.rmse_change),
                        where.empty() ? std::string(name_of(row.difference)) : where,
-                       nanoseconds_text(value(row.a, &AlgorithmSummary::ns_per_sample)),
-                       nanoseconds_text(value(row.b, &AlgorithmSummary::ns_per_sample)),
+                       duration_text(1e-9 * value(row.a, &AlgorithmSummary::ns_per_sample)),
+                       duration_text(1e-9 * value(row.b, &AlgorithmSummary::ns_per_sample)),
                        bytes(value(row.a, &AlgorithmSummary::peak_bytes)),
                        bytes(value(row.b, &AlgorithmSummary::peak_bytes)));
   }

@@ -2,13 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
-#include "libchar/characterize/summary.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
@@ -18,94 +15,60 @@ namespace libchar {
 
 namespace {
 
-std::string rounded_length(double seconds) {
-  if (seconds < 120) return fmt::format("{} s", number_text(seconds, 2));
-  if (seconds < 7200) return fmt::format("{} min", number_text(seconds / 60, 2));
-  if (seconds < 172800) return fmt::format("{} h", number_text(seconds / 3600, 2));
-  if (seconds < 3.2e8) return fmt::format("{} d", number_text(seconds / 86400, 2));
-  return "> 10 years";
-}
-
-std::string in_habitual_units(const Coefficient& term, std::size_t i, const std::string& unit) {
-  std::string text;
-  for (const HabitualValue& habit : habitual_units(kTermNames[i].key, unit)) {
-    const double value = term.value ? *term.value : term.upper95.value_or(0);
-    text += fmt::format("{}{}{} {}",
-                        text.empty() ? "" : ", ",
-                        term.value ? "" : "≤ ",
-                        significant(habit.factor * value, 4),
-                        habit.symbol);
-  }
-  return text;
-}
-
 // "N angle random walk": the letter of IEEE 952 and the field's name.
-std::string named(Term term, const std::string& unit) {
-  std::string title = term_title(term, unit);
-  if (!title.empty() && title[0] >= 'A' && title[0] <= 'Z')
-    title[0] = static_cast<char>(title[0] - 'A' + 'a');
-  return fmt::format("{} {}", kTermNames[static_cast<std::size_t>(term)].letter, title);
+std::string named(const TermCells& cells) {
+  std::string title = cells.title;
+  title[0] = static_cast<char>(title[0] - 'A' + 'a');
+  return cells.letter + " " + title;
 }
 
-std::vector<std::string> row_of(const Coefficient& term, std::size_t i, const std::string& unit) {
-  const std::string value = term.value     ? significant(*term.value, 5)
-                            : term.upper95 ? "≤ " + significant(*term.upper95, 3)
-                                           : "–";
-  const std::string interval =
-      term.value
-          ? fmt::format("{} … {}", significant(term.ci95.low, 4), significant(term.ci95.high, 4))
-          : "";
-  std::string status(name_of(term.status));
-  std::replace(status.begin(), status.end(), '_', ' ');
-  return {named(static_cast<Term>(i), unit),
-          value,
-          interval,
-          shown_term_unit(kTermNames[i].key, printable(unit)),
-          status,
-          term.bound ? fmt::format("{} %", significant(100 * *term.bound, 2)) : "",
-          term.seconds_for_10_percent ? rounded_length(*term.seconds_for_10_percent) : "",
-          in_habitual_units(term, i, unit)};
+std::string status_cell(Status status, bool colours) {
+  return tinted(status_words(status), tint_of(status), colours);
+}
+
+std::vector<std::string> row_of(const TermCells& cells, bool colours) {
+  return {named(cells),
+          cells.own.value,
+          interval_words(cells.own),
+          cells.own.unit,
+          status_cell(cells.status, colours),
+          cells.best_possible,
+          cells.length_for_10_percent,
+          said(cells.field)};
 }
 
 std::vector<std::string> process_row(const Coefficient& c,
                                      const std::string& name,
-                                     const std::string& unit) {
-  const std::string high = std::isfinite(c.ci95.high) ? significant(c.ci95.high, 4) : "no end";
-  std::string status(name_of(c.status));
-  std::replace(status.begin(), status.end(), '_', ' ');
+                                     const std::string& unit,
+                                     bool colours) {
+  const ShownValue shown = shown_value(c, 1, unit);
   return {name,
-          significant(*c.value, 5),
-          fmt::format("{} … {}", significant(c.ci95.low, 4), high),
+          shown.value,
+          interval_words(shown),
           unit,
-          status,
-          c.bound ? fmt::format("{} %", significant(100 * *c.bound, 2)) : "",
+          status_cell(c.status, colours),
+          c.bound ? "±" + percent_text(*c.bound) : "",
           "",
           ""};
 }
 
-std::string power_laws_text(const NoiseFit& fit, std::size_t width) {
+std::string power_laws_text(const NoiseFit& fit, const TextLook& look) {
   std::vector<std::vector<std::string>> rows = {
       {"S_y(f), one-sided", "noise type", "h", "95 % interval", "status"}};
   for (const PowerLaw& law : power_laws(fit)) {
-    std::string status(name_of(law.h.status));
-    std::replace(status.begin(), status.end(), '_', ' ');
+    const ShownValue h = shown_value(law.h, 1, "");
     rows.push_back({fmt::format("h{} f^{}", law.alpha, law.alpha),
                     fmt::format("{} {}", law.name, law.abbreviation),
-                    law.h.value     ? significant(*law.h.value, 4)
-                    : law.h.upper95 ? "≤ " + significant(*law.h.upper95, 3)
-                                    : "–",
-                    law.h.value ? fmt::format("{} … {}",
-                                              significant(law.h.ci95.low, 3),
-                                              significant(law.h.ci95.high, 3))
-                                : "",
-                    status});
+                    h.value,
+                    interval_words(h),
+                    status_cell(law.h.status, look.colours)});
   }
-  return rows.size() > 1 ? text_table(rows, "  ", true, width) : "";
+  return rows.size() > 1 ? text_table(rows, "  ", true, look.width) : "";
 }
 
 }  // namespace
 
-std::string fit_text(const Channel& channel, const NoiseFit& fit, std::size_t width) {
+std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook& look) {
   std::string text = fmt::format("{}{}\n",
                                  printable(channel.name),
                                  shown_unit(channel.unit).empty() || channel.unit.empty()
@@ -116,38 +79,40 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit, std::size_t wi
                                                  "95 % interval",
                                                  "unit",
                                                  "status",
-                                                 "least error",
+                                                 "best possible",
                                                  "record for 10 %",
                                                  "in other words"}};
   for (std::size_t i = 0; i < kTerms; ++i) {
     if (fit.term[i].status != Status::not_fitted)
-      rows.push_back(row_of(fit.term[i], i, channel.unit));
+      rows.push_back(row_of(term_cells(fit.term[i], static_cast<Term>(i), printable(channel.unit)),
+                            look.colours));
   }
   if (fit.gauss_markov && fit.gauss_markov->in_model) {
     const std::string unit = channel.unit.empty() ? "U" : printable(channel.unit);
-    rows.push_back(process_row(fit.gauss_markov->sigma, "gauss_markov sigma", unit));
-    rows.push_back(process_row(fit.gauss_markov->tau_s, "gauss_markov tau", "s"));
+    rows.push_back(process_row(fit.gauss_markov->sigma, "gauss_markov sigma", unit, look.colours));
+    rows.push_back(process_row(fit.gauss_markov->tau_s, "gauss_markov tau", "s", look.colours));
   }
-  text += text_table(rows, "  ", true, width);
+  text += text_table(rows, "  ", true, look.width);
   if (!fit.band.whole)
     text +=
-        "  least error, record for 10 %: of a record whose whole spectrum the terms describe, not "
-        "this band "
-        "alone\n";
-  text += power_laws_text(fit, width);
-  if (fit.bandwidth_hz)
-    text += fmt::format("  low-pass corner {} Hz ({} … {})\n",
-                        significant(*fit.bandwidth_hz, 4),
-                        significant(fit.bandwidth_ci95->low, 4),
-                        significant(fit.bandwidth_ci95->high, 4));
+        "  best possible, record for 10 %: of a record whose whole spectrum the terms describe, "
+        "not "
+        "this band alone\n";
+  text += power_laws_text(fit, look);
+  if (fit.bandwidth_hz) {
+    const int digits = digits_of(*fit.bandwidth_hz, *fit.bandwidth_ci95);
+    text += fmt::format("  low-pass corner {} Hz ({})\n",
+                        number_text(*fit.bandwidth_hz, digits),
+                        interval_text(*fit.bandwidth_ci95, digits));
+  }
   // A curve without uncertainties is scaled to its own scatter: its chi-square says nothing.
   const bool judged = fit.goodness.p < 1 || fit.goodness.chi2 != fit.goodness.dof;
   text += "  " + fit.method;
   if (judged)
     text += fmt::format("; goodness of fit: chi-square {} for {} degrees of freedom, p = {}",
-                        significant(fit.goodness.chi2, 4),
-                        significant(fit.goodness.dof, 4),
-                        significant(fit.goodness.p, 2));
+                        brief_text(fit.goodness.chi2, 4),
+                        brief_text(fit.goodness.dof, 4),
+                        brief_text(fit.goodness.p, 2));
   text += "\n";
   if (fit.second_opinion)
     text += fmt::format("  second opinion (covariance-weighted Allan fit): {}\n",

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "libchar/core/text_table.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/log/recording.hpp"
 
@@ -10,6 +11,6 @@ namespace libchar {
 
 /// One channel's noise coefficients as a table, with what was done to the data and what to think of the fit.
 /// `width`: characters in a line that its table is fitted to; 0: any.
-std::string fit_text(const Channel& channel, const NoiseFit& fit, std::size_t width = 0);
+std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook& look = {});
 
 }  // namespace libchar

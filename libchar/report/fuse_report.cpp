@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
@@ -17,7 +17,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
-  return significant(100 * share(part, whole), 3) + " %";
+  return percent_text(share(part, whole), 3);
 }
 
 Json faults_json(const FuseResult& result) {
@@ -48,7 +48,7 @@ std::string fuse_text(const FuseResult& result, const std::vector<std::string>& 
   std::string out = fmt::format("{}: {} instants at {} Hz fused by {}, {} with an estimate",
                                 printable(result.log.file),
                                 result.instants,
-                                significant(result.rate_hz, 6),
+                                brief_text(result.rate_hz, 6),
                                 result.algorithm.label,
                                 percent(result.estimates, result.instants));
   out += result.deviations == 0

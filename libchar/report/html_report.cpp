@@ -11,8 +11,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/report/detail/assets.hpp"
@@ -38,7 +38,7 @@ std::string facts(const CharacterizationView& view) {
                      count_text(log.samples));
   if (log.time.rate_hz > 0) {
     out += fmt::format(" at <b>{}</b> Hz{} · <b>{}</b>",
-                       significant(log.time.rate_hz, 6),
+                       brief_text(log.time.rate_hz, 6),
                        log.time.from_stamps ? " (from the stamps)" : " (stated)",
                        html_text(duration_text(view.duration_s)));
   }
@@ -59,19 +59,14 @@ std::string overview_cell(const ChannelView& view, Term term, std::string_view l
   if (!c.fit) return card_cell(label, "–", "");
   const Coefficient& k = (*c.fit)[term];
   if (!k.value && !k.upper95) return card_cell(label, "–", "");
-  const FieldUnit field = field_unit(term, view.unit);
-  const std::string mark = k.status == Status::undetermined || k.status == Status::misfit
-                               ? "<span class=\"dim\"> ?</span>"
-                               : "";
-  const std::string whole = coefficient_text(k, field.factor);
-  const std::string interval =
-      k.value ? "<span class=\"ci\">" + html_text(whole.substr(whole.find('['))) + "</span>" : "";
+  const TermCells cells = term_cells(k, term, view.unit);
+  const ShownValue& shown = headline(cells);
   return card_cell(label,
                    fmt::format("{} <span class=\"dim\">{}</span>{}{}",
-                               html_text(value_text(k, field.factor)),
-                               html_text(field.symbol),
-                               mark,
-                               interval),
+                               html_text(shown.value),
+                               html_text(shown.unit),
+                               doubted(k.status) ? "<span class=\"dim\"> ?</span>" : "",
+                               interval_span(shown)),
                    k.value ? "n" : "n limit");
 }
 
@@ -104,7 +99,7 @@ std::string overview_row(const ChannelView& view, std::size_t index, double rate
                    "n");
   out += card_cell(
       "Goodness of fit", c.fit ? html_text(probability_text(c.fit->goodness.p)) : "no fit", "n");
-  return out + card_cell("Verdict", rating_badge(view.summary.rating), "") + "</tr>\n";
+  return out + card_cell("Verdict", rating_badge(view.judgement.rating), "") + "</tr>\n";
 }
 
 std::string overview_table(const CharacterizationView& view) {
@@ -131,10 +126,10 @@ std::string sentences(const CharacterizationView& view) {
   for (std::size_t i = 0; i < view.channels.size(); ++i) {
     const ChannelView& c = view.channels[i];
     out += fmt::format("<li class=\"{}\">{} {} {}</li>\n",
-                       name_of(c.summary.rating),
-                       rating_badge(c.summary.rating),
+                       name_of(c.judgement.rating),
+                       rating_badge(c.judgement.rating),
                        channel_link(c, i),
-                       html_text(c.summary.sentence));
+                       html_text(c.summary));
   }
   return out + "</ul>\n";
 }
@@ -203,7 +198,7 @@ std::string overview(const CharacterizationView& view) {
 std::string time_base(const LogInfo& log) {
   const TimeBase& t = log.time;
   std::string out = "<h3>Time base</h3>\n<table class=\"facts\"><tbody>\n";
-  out += table_row({"Rate", t.rate_hz > 0 ? significant(t.rate_hz, 9) + " Hz" : "unknown"});
+  out += table_row({"Rate", t.rate_hz > 0 ? brief_text(t.rate_hz, 9) + " Hz" : "unknown"});
   out += table_row({"Where from",
                     t.from_stamps ? "stamps in " + t.column + " (" + t.unit +
                                         (t.unit_guessed ? ", guessed)" : ")")

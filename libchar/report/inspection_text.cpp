@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/spelling.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
@@ -17,7 +18,7 @@ namespace {
 // Enough digits to see a thousandth of the noise beside a large offset.
 std::string beside_noise(double value, double noise) {
   const double ratio = noise > 0 ? std::abs(value) / noise : 1;
-  return significant(
+  return brief_text(
       value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
 }
 
@@ -32,12 +33,12 @@ std::vector<std::string> channel_row(const Channel& channel, const ChannelQualit
           beside_noise(q.mean, noise),
           constant                             ? "constant"
           : q.samples < 2 || std::isnan(noise) ? "-"
-                                               : significant(noise, 4),
+                                               : brief_text(noise, 4),
           beside_noise(q.minimum, noise),
           beside_noise(q.maximum, noise),
-          q.resolution ? significant(*q.resolution, 4) : "-",
+          q.resolution ? brief_text(*q.resolution, 4) : "-",
           std::to_string(q.saturated),
-          q.samples < 3 || constant ? "-" : significant(q.difference_kurtosis, 3)};
+          q.samples < 3 || constant ? "-" : brief_text(q.difference_kurtosis, 3)};
 }
 
 std::string channel_table(const Inspection& inspection, std::size_t width) {
@@ -72,7 +73,7 @@ std::vector<std::string> topic_row(const LogTopic& topic) {
   return {printable(topic.name, 60),
           topic.type.empty() ? "-" : printable(topic.type, 40),
           std::to_string(topic.rows),
-          topic.rate_hz > 0 ? significant(topic.rate_hz, 4) + " Hz" : "-",
+          topic.rate_hz > 0 ? brief_text(topic.rate_hz, 4) + " Hz" : "-",
           some_fields(topic)};
 }
 
@@ -164,9 +165,8 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
     dialect += (dialect == info.format ? ": " : "; ") + printable(fact);
   text += "  read as " + dialect + "\n";
   for (const std::string& guess : info.guesses) text += "  guessed: " + printable(guess) + "\n";
-  const std::string front = printable(info.file) + ": warning: ";
   for (const Warning& warning : info.warnings.list())
-    text += "  warning: " + one_line(warning, info.file).substr(front.size()) + "\n";
+    text += "  warning: " + sentence_of(warning) + "\n";
   text += is_listing(info) ? topic_table(info, width) : channel_table(inspection, width);
   return text + remarks(inspection);
 }

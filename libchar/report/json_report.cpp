@@ -78,9 +78,7 @@ Json quality_json(const ChannelResult& channel) {
 Json for_drawing(const std::vector<double>& values, int digits) {
   Json out = Json::array();
   for (const double value : values)
-    out.push_back(std::isfinite(value)
-                      ? Json(parse_double(fmt::format("{:.{}g}", value, digits)).value_or(value))
-                      : Json(nullptr));
+    out.push_back(std::isfinite(value) ? Json(rounded(value, digits)) : Json(nullptr));
   return out;
 }
 
@@ -115,14 +113,15 @@ Json trace_json(const ChannelView& view) {
 
 Json summary_json(const ChannelView& view) {
   Json spoils = Json::array();
-  for (const std::string& phrase : view.summary.spoils) spoils.push_back(json_text(phrase));
+  for (const Objection& objection : view.judgement.objections)
+    spoils.push_back(json_text(objection.phrase));
   return {{"name", json_text(view.result->channel.name)},
-          {"rating", name_of(view.summary.rating)},
-          {"sentence", json_text(view.summary.sentence)},
+          {"rating", name_of(view.judgement.rating)},
+          {"sentence", json_text(view.summary)},
           {"spoils", std::move(spoils)}};
 }
 
-// A channel that could not be fitted keeps its place: null, with the reason in "problems".
+// A channel that could not be fitted keeps its place: null, with the objection in "problems".
 Json fit_or_reason(const ChannelView& view) {
   const ChannelResult& channel = *view.result;
   const std::string name = json_text(channel.channel.name), unit = json_text(channel.channel.unit);

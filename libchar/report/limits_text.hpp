@@ -7,6 +7,6 @@
 
 namespace libchar {
 
-std::string limits_text(const LimitReport& report);
+std::string limits_text(const LimitReport& report, bool colours = false);
 
 }  // namespace libchar

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/replay/preparation_words.hpp"
@@ -31,7 +30,7 @@ std::string facts(const ReplayView& view) {
       "<p class=\"facts\"><b>{}</b> sensors · <b>{}</b> instants at <b>{}</b> Hz · <b>{}</b>",
       r.sensors.size(),
       count_text(r.instants),
-      significant(r.rate_hz, 6),
+      brief_text(r.rate_hz, 6),
       html_text(duration_text(view.duration_s)));
   if (r.has_reference) {
     out += " · reference: " + html_text(r.reference_use);

@@ -9,6 +9,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/replay/algorithm_words.hpp"
@@ -54,8 +55,7 @@ Json weights_json(const std::vector<std::vector<double>>& weights) {
 Json drawn(const std::vector<double>& values) {
   Json out = Json::array();
   for (const double value : values)
-    out.push_back(std::isfinite(value) ? Json(parse_double(significant(value, 6)).value_or(value))
-                                       : Json(nullptr));
+    out.push_back(std::isfinite(value) ? Json(rounded(value, 6)) : Json(nullptr));
   return out;
 }
 
@@ -86,9 +86,7 @@ int digits_of(const Timeline& track) {
 Json drawn_to(const std::vector<double>& values, int digits) {
   Json out = Json::array();
   for (const double value : values)
-    out.push_back(std::isfinite(value)
-                      ? Json(parse_double(significant(value, digits)).value_or(value))
-                      : Json(nullptr));
+    out.push_back(std::isfinite(value) ? Json(rounded(value, digits)) : Json(nullptr));
   return out;
 }
 

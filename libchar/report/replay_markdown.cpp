@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/replay/preparation_words.hpp"
 #include "libchar/report/detail/alignment_pieces.hpp"
@@ -13,16 +12,6 @@
 
 namespace libchar {
 namespace {
-
-std::string between(const Interval& i) {
-  return std::isfinite(i.low) && std::isfinite(i.high)
-             ? fmt::format("{} … {}", significant_or_dash(i.low, 4), significant_or_dash(i.high, 4))
-             : "–";
-}
-
-std::string percent(double share) {
-  return std::isfinite(share) ? fmt::format("{:.2f} %", 100 * share) : "–";
-}
 
 std::string with_reference(const ReplayView& view) {
   std::string out =
@@ -35,13 +24,13 @@ std::string with_reference(const ReplayView& view) {
                        markdown_text(a->label),
                        a->bound ? " (bound)" : "",
                        a->as_good_as_best && !a->bound ? " \\*" : "",
-                       significant_or_dash(a->rmse, 4),
-                       between(a->rmse_ci95),
-                       percent(a->regret),
-                       scored ? significant_or_dash(a->inputs[0].error.bias, 2) : "–",
-                       scored ? significant_or_dash(a->inputs[0].error.maximum, 3) : "–",
-                       percent(a->availability),
-                       nanoseconds_text(a->ns_per_sample),
+                       number_text(a->rmse),
+                       interval_text(a->rmse_ci95),
+                       excess_text(a->regret),
+                       scored ? brief_text(a->inputs[0].error.bias, 2) : "–",
+                       scored ? brief_text(a->inputs[0].error.maximum, 3) : "–",
+                       percent_text(a->availability, 4),
+                       duration_text(1e-9 * a->ns_per_sample),
                        bytes_text(a->peak_bytes));
   }
   return out;
@@ -57,11 +46,11 @@ std::string without_reference(const ReplayView& view) {
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(a->label),
                        a->as_good_as_best ? " \\*" : "",
-                       significant_or_dash(a->rmse, 4),
-                       between(a->rmse_ci95),
-                       a->blind ? significant_or_dash(a->blind->split_rms, 4) : "–",
-                       percent(a->availability),
-                       nanoseconds_text(a->ns_per_sample),
+                       number_text(a->rmse),
+                       interval_text(a->rmse_ci95),
+                       a->blind ? brief_text(a->blind->split_rms, 4) : "–",
+                       percent_text(a->availability, 4),
+                       duration_text(1e-9 * a->ns_per_sample),
                        bytes_text(a->peak_bytes));
   }
   return out;
@@ -82,9 +71,9 @@ std::string several_inputs(const ReplayView& view) {
       if (j >= a->inputs.size()) continue;
       out += fmt::format("| {} | {} | {} | {} |\n",
                          markdown_text(a->label),
-                         significant_or_dash(a->inputs[j].error.rmse, 4),
-                         between(a->inputs[j].error.rmse_ci95),
-                         significant_or_dash(a->inputs[j].optimum_ratio, 4));
+                         number_text(a->inputs[j].error.rmse),
+                         interval_text(a->inputs[j].error.rmse_ci95),
+                         brief_text(a->inputs[j].optimum_ratio, 4));
     }
   }
   return out;
@@ -103,17 +92,17 @@ std::string sensors_section(const ReplayView& view) {
                        : s.copy_of ? " (= " + markdown_text(r.sensors[*s.copy_of].name) + ")"
                                    : "",
                        markdown_text(s.unit),
-                       significant_or_dash(s.error.rmse, 4),
-                       significant_or_dash(s.error.bias, 2),
-                       percent(s.missing),
-                       view.noise_sd[i] ? significant_or_dash(*view.noise_sd[i], 4) : "–",
+                       brief_text(s.error.rmse, 4),
+                       brief_text(s.error.bias, 2),
+                       percent_text(s.missing),
+                       view.noise_sd[i] ? brief_text(*view.noise_sd[i], 4) : "–",
                        s.noise_source.empty() ? "–" : markdown_text(s.noise_source));
   }
   return out;
 }
 
 std::string delay(const std::optional<double>& seconds) {
-  return seconds ? significant(*seconds, 3) + " s" : "never";
+  return seconds ? duration_text(*seconds) : "never";
 }
 
 std::string fault_words(const ReplayResult& r, const SensorFault& fault) {
@@ -122,9 +111,9 @@ std::string fault_words(const ReplayResult& r, const SensorFault& fault) {
       "| {} {} {} from {} s{} |",
       markdown_text(r.sensors[fault.sensor].name),
       name_of(fault.kind),
-      valueless ? "" : significant_or_dash(fault.value, 4),
-      significant(fault.from_s, 6),
-      std::isfinite(fault.to_s) ? fmt::format(" to {} s", significant(fault.to_s, 6)) : "");
+      valueless ? "" : brief_text(fault.value, 4),
+      brief_text(fault.from_s, 6),
+      std::isfinite(fault.to_s) ? fmt::format(" to {} s", brief_text(fault.to_s, 6)) : "");
 }
 
 std::string faults_section(const ReplayView& view) {
@@ -160,7 +149,7 @@ std::string detection_section(const ReplayView& view) {
     out += fmt::format(" {} {} from {} s: found after |",
                        markdown_text(r.sensors[fault.sensor].name),
                        name_of(fault.kind),
-                       significant(fault.from_s, 6));
+                       brief_text(fault.from_s, 6));
     line += "---|";
   }
   out += " alarms where no fault is known |" + line + "---|\n";
@@ -193,15 +182,14 @@ std::string run_facts(const ReplayView& view) {
   std::string out = fmt::format("{} sensors, {} instants at {} Hz from {} s.",
                                 r.sensors.size(),
                                 r.instants,
-                                significant(r.rate_hz, 6),
-                                significant(r.start_s, 6));
+                                brief_text(r.rate_hz, 6),
+                                brief_text(r.start_s, 6));
   if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
     out += fmt::format(" Optimum of {}: RMSE {}.",
                        view.optimum,
                        error_text(r.inputs[0].optimum_rmse, markdown_text(r.inputs[0].unit)));
   if (r.lag_estimated)
-    out +=
-        fmt::format(" The sensors lag the reference by {} s (estimated).", significant(r.lag_s, 3));
+    out += fmt::format(" The sensors lag the reference by {} (estimated).", duration_text(r.lag_s));
   for (const std::string& sentence : preparation_words(r)) out += " " + markdown_text(sentence);
   return out;
 }

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/text_table.hpp"
@@ -15,13 +14,7 @@
 #include "libchar/report/detail/alignment_pieces.hpp"
 
 namespace libchar {
-namespace {
-
-std::string cell(double value, int digits) {
-  return std::isfinite(value) ? significant(value, digits) : "-";
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::string replay_text(const ReplayView& view, std::size_t width) {
   const ReplayResult& r = *view.result;
@@ -31,32 +24,27 @@ std::string replay_text(const ReplayView& view, std::size_t width) {
                                  printable(view.title),
                                  r.sensors.size(),
                                  r.instants,
-                                 significant(r.rate_hz, 6));
+                                 brief_text(r.rate_hz, 6));
   if (r.lag_estimated)
     text +=
-        fmt::format("the sensors lag the reference by {} s (estimated)\n", significant(r.lag_s, 3));
+        fmt::format("the sensors lag the reference by {} (estimated)\n", duration_text(r.lag_s));
   for (const std::string& sentence : preparation_words(r)) text += printable(sentence) + "\n";
   if (r.has_reference && std::isfinite(r.inputs[0].optimum_rmse))
     text += fmt::format(
-        "optimum of this scene: RMSE {}{}\n", significant(r.inputs[0].optimum_rmse, 4), unit);
+        "optimum of this scene: RMSE {}{}\n", brief_text(r.inputs[0].optimum_rmse, 4), unit);
   std::vector<std::vector<std::string>> rows = {
       {"algorithm", error, "95 %", "regret", "ns/sample", "memory", ""}};
   for (const AlgorithmView* v : view.ranked) {
     const AlgorithmResult* a = v->result;
-    rows.push_back(
-        {printable(a->label),
-         cell(a->rmse, 5),
-         std::isfinite(a->rmse_ci95.low)
-             ? fmt::format("{} to {}", cell(a->rmse_ci95.low, 4), cell(a->rmse_ci95.high, 4))
-             : "-",
-         !std::isfinite(a->regret) ? "-"
-         : a->regret < 100         ? fmt::format("{:.2f} %", 100 * a->regret)
-                                   : significant(1 + a->regret, 3) + " x",
-         cell(a->ns_per_sample, 3),
-         bytes_text(a->peak_bytes),
-         a->bound             ? "(bound)"
-         : a->as_good_as_best ? "*"
-                              : ""});
+    rows.push_back({printable(a->label),
+                    number_text(a->rmse),
+                    interval_text(a->rmse_ci95),
+                    excess_text(a->regret),
+                    brief_text(a->ns_per_sample, 3),
+                    bytes_text(a->peak_bytes),
+                    a->bound             ? "(bound)"
+                    : a->as_good_as_best ? "*"
+                                         : ""});
   }
   text += "\n" + text_table(rows, "", true, width);
   text += "\n* the best method, and those whose difference from it is not resolved\n";
@@ -75,7 +63,7 @@ std::string option_text(const fusion::Option& option) {
   return fmt::format("{:<28}   {} = {}{}  {}\n",
                      "",
                      option.name,
-                     significant(option.standard, 6),
+                     brief_text(option.standard, 6),
                      option.unit.empty() ? "" : " " + std::string(option.unit),
                      option.meaning);
 }

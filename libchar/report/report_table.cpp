@@ -11,6 +11,7 @@
 #include "libchar/core/pattern.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/spelling.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/escape.hpp"
@@ -71,42 +72,22 @@ std::string csv_number(const std::optional<double>& value) {
   return value ? csv_number(*value) : "";
 }
 
-std::string spaced_words(std::string_view word) {
-  std::string out(word);
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
-int digits_of_interval(const Coefficient& c) {
-  return *c.value > 0 ? digits_for((c.ci95.high - c.ci95.low) / (4 * *c.value)) : 3;
-}
-
-std::string interval_words(const Coefficient& c) {
-  if (!c.value) return c.upper95 ? "95 % upper limit" : "";
-  const int digits = digits_of_interval(c);
-  return fmt::format("{} … {}", number_text(c.ci95.low, digits), number_text(c.ci95.high, digits));
-}
-
-/// As the field says it, the value alone: "0.2406 deg/√h".
-std::string habitual_words(const Coefficient& c, std::size_t term, const std::string& unit) {
-  const auto habits = habitual_units(kTermNames[term].key, unit);
-  if (habits.empty() || (!c.value && !c.upper95)) return "";
-  return value_text(c, habits[0].factor) + " " + habits[0].symbol;
-}
-
 void add_channel(ReportTable& table, const ReportedChannel& channel) {
   bool first = true;
   for (std::size_t t = 0; t < kTerms; ++t) {
     const Coefficient& c = channel.term[t];
     if (c.status == Status::not_fitted) continue;
-    table.rows.push_back(
-        {{first ? printable(channel.name) : ""},
-         {fmt::format("{} ({})", spaced_words(kTermNames[t].key), kTermNames[t].letter)},
-         {value_text(c)},
-         {interval_words(c)},
-         {printable(shown_term_unit(kTermNames[t].key, channel.unit)), true},
-         {printable(habitual_words(c, t, channel.unit))},
-         {spaced_words(name_of(c.status))}});
+    const TermCells cells = term_cells(c, static_cast<Term>(t), channel.unit);
+    const bool quoted = !cells.field.empty();
+    table.rows.push_back({{first ? printable(channel.name) : ""},
+                          {fmt::format("{} ({})", cells.title, cells.letter)},
+                          {cells.own.value},
+                          {c.value     ? interval_words(cells.own)
+                           : c.upper95 ? "95 % upper limit"
+                                       : ""},
+                          {printable(cells.own.unit), true},
+                          {quoted ? printable(said(cells.field.front())) : ""},
+                          {status_words(c.status)}});
     first = false;
   }
 }
@@ -217,20 +198,15 @@ std::string ranking_table(const ReplaySummary& report, TableFormat format) {
                 {"memory"}};
   table.alignment = "lrlrrr";
   for (const AlgorithmSummary* a : best_first(report)) {
-    const bool known = std::isfinite(a->rmse_ci95.low) && std::isfinite(a->rmse_ci95.high);
     const auto bytes = std::isfinite(a->peak_bytes)
                            ? std::optional(static_cast<std::uint64_t>(a->peak_bytes))
                            : std::nullopt;
-    table.rows.push_back(
-        {{printable(a->label) + (a->bound ? " (bound)" : "")},
-         {significant_or_dash(a->rmse, 4)},
-         {known ? fmt::format("{} … {}",
-                              significant_or_dash(a->rmse_ci95.low, 4),
-                              significant_or_dash(a->rmse_ci95.high, 4))
-                : "–"},
-         {std::isfinite(a->regret) ? fmt::format("{:.2f} %", 100 * a->regret) : "–"},
-         {nanoseconds_text(a->ns_per_sample)},
-         {bytes_text(bytes)}});
+    table.rows.push_back({{printable(a->label) + (a->bound ? " (bound)" : "")},
+                          {number_text(a->rmse)},
+                          {interval_text(a->rmse_ci95)},
+                          {excess_text(a->regret)},
+                          {duration_text(1e-9 * a->ns_per_sample)},
+                          {bytes_text(bytes)}});
   }
   return rendered(table, format);
 }

@@ -11,6 +11,7 @@
 #include "libchar/core/file_name.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/detail/assets.hpp"
@@ -211,15 +212,15 @@ std::string runs_html(const RunsReport& report) {
                    json_in_script(runs_json(report)));
 }
 
-std::string runs_text(const RunsReport& report) {
+std::string runs_text(const RunsReport& report, const TextLook& look) {
   std::string out = printable(report.pooled->verdict) + "\n";
   for (const PooledChannel& c : report.pooled->channels) {
-    out += "\n" + fit_text(c.channel, c.fit);
+    out += "\n" + fit_text(c.channel, c.fit, look);
     for (const std::string& sentence : c.sentences) out += "  " + printable(sentence) + "\n";
   }
   for (const std::string& problem : report.pooled->problems)
     out += "\n" + printable(problem) + "\n";
-  if (report.limits != nullptr) out += limits_text(*report.limits);
+  if (report.limits != nullptr) out += limits_text(*report.limits, look.colours);
   return out;
 }
 

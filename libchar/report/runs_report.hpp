@@ -10,6 +10,7 @@
 #include "libchar/characterize/runs.hpp"
 #include "libchar/core/json.hpp"
 #include "libchar/core/output_files.hpp"
+#include "libchar/core/text_table.hpp"
 
 namespace libchar {
 
@@ -26,6 +27,6 @@ struct RunsReport {
 std::vector<OutputFile> runs_files(const RunsReport& report, const std::filesystem::path& folder);
 Json runs_json(const RunsReport& report);
 std::string runs_html(const RunsReport& report);
-std::string runs_text(const RunsReport& report);
+std::string runs_text(const RunsReport& report, const TextLook& look = {});
 
 }  // namespace libchar

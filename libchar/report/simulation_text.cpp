@@ -4,28 +4,28 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/scene/simulated_scene.hpp"
 
 namespace libchar {
 
 std::string simulation_text(const ArraySimulation& s, const SimulatedLog& written) {
-  std::string text = fmt::format("{}: {} samples of {} channel{} at {} Hz, {} s, seed {}\n",
+  std::string text = fmt::format("{}: {} samples of {} channel{} at {} Hz, {}, seed {}\n",
                                  printable(written.files.at(0)),
                                  s.samples,
                                  written.channels,
                                  written.channels == 1 ? "" : "s",
-                                 significant(s.rate_hz, 6),
-                                 significant(static_cast<double>(s.samples) / s.rate_hz, 6),
+                                 brief_text(s.rate_hz, 6),
+                                 duration_text(static_cast<double>(s.samples) / s.rate_hz),
                                  s.seed);
   for (std::size_t i = 0; i < s.sensors.size(); ++i) {
     const SensorModel& m = s.sensors[i].model;
     if (m.scale_factor.spread > 0 || m.bias.spread > 0)
       text += fmt::format("  {}: drew scale factor {}, bias {} {}\n",
                           printable(s.sensors[i].name),
-                          significant(written.draws[i].scale_factor, 6),
-                          significant(written.draws[i].bias, 6),
+                          brief_text(written.draws[i].scale_factor, 6),
+                          brief_text(written.draws[i].bias, 6),
                           printable(m.unit));
   }
   for (std::size_t i = 1; i < written.files.size(); ++i)

@@ -7,6 +7,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/log/read.hpp"
 
 namespace libchar {
@@ -29,9 +30,9 @@ void read_recorded_signal(SignalSpec& signal,
   const double rate = log.info.time.rate_hz;
   if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
     refuse(fmt::format("the recording has {} Hz, and the simulation runs at {} Hz",
-                       significant(rate, 6),
-                       significant(simulation.rate_hz, 6)),
-           fmt::format("`rate_hz` {}", significant(rate, 6)));
+                       brief_text(rate, 6),
+                       brief_text(simulation.rate_hz, 6)),
+           "`rate_hz` " + shortest(rounded(rate, 6)));
   signal.samples = std::move(log.samples[0]);
   if (signal.samples.empty()) refuse("the recording holds no sample", "");
   if (signal.samples.size() < simulation.samples)

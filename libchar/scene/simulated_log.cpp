@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/scene/scene_writer.hpp"
@@ -78,8 +78,8 @@ Warnings late_faults(const ArraySimulation& simulation) {
                    "a fault begins after the end of the recording and changes nothing",
                    fmt::format("{} from {} s, the end is at {} s",
                                simulation.sensors[fault.sensor].name,
-                               significant(fault.from_s, 6),
-                               significant(end_s, 6)));
+                               brief_text(fault.from_s, 6),
+                               brief_text(end_s, 6)));
   return warnings;
 }
 

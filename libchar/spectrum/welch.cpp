@@ -14,8 +14,9 @@
 #include <optional>
 #include <utility>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/thread_limit.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/halves_in_place.hpp"
@@ -209,7 +210,7 @@ Spectrum welch_using_up(std::vector<double> record,
 }
 
 std::uint64_t segment_samples(double seconds, double rate_hz) {
-  const std::string got = significant(seconds, 6) + "s";
+  const std::string got = duration_text(seconds, 6);
   if (!(rate_hz > 0))
     throw Error({ErrorKind::usage,
                  "E0205",
@@ -223,8 +224,8 @@ std::uint64_t segment_samples(double seconds, double rate_hz) {
                  "E0201",
                  "`segment`",
                  fmt::format("at {} Hz this is {} samples, and a segment needs at least {}",
-                             significant(rate_hz, 6),
-                             significant(samples, 6),
+                             brief_text(rate_hz, 6),
+                             brief_text(samples, 6),
                              kShortestSegment),
                  got,
                  ""});

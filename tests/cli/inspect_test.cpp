@@ -12,8 +12,7 @@ TEST_CASE("inspect says in one line what was understood, and marks guesses") {
   const auto ran = test::run({"inspect", test::fixture("npy/structured.npy").string()});
   CHECK(ran.code == 0);
   CHECK(ran.err.empty());
-  CHECK_THAT(ran.out,
-             Contains("structured.npy: 7 channels, 200.000 Hz (jitter 0 ns), 0.025 s, 0 gaps\n"));
+  CHECK_THAT(ran.out, Contains("structured.npy: 7 channels, 200 Hz (jitter 0 s), 25 ms, 0 gaps\n"));
   CHECK_THAT(ran.out, Contains("  guessed: time unit: ns"));
   CHECK_THAT(ran.out, Contains("gyr_0") && Contains("kurtosis of differences"));
   CHECK_THAT(
@@ -99,7 +98,7 @@ TEST_CASE("standard input is read as CSV") {
   options.stdin_path = (folder / "in.csv").string();
   const auto ran = test::run({"inspect", "-"}, options);
   CHECK(ran.code == 0);
-  CHECK_THAT(ran.out, Contains("1 channel, 100.000 Hz"));
+  CHECK_THAT(ran.out, Contains("1 channel, 100 Hz"));
 }
 
 TEST_CASE("one row with a stamp has no rate, and --rate would not give it one") {

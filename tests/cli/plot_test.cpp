@@ -100,7 +100,7 @@ TEST_CASE("what plot cannot do it says in a sentence, and writes nothing") {
       {{"plot", plotted_report(), "-c", "gyro_z", "--kind", "front", "-o", out}, 2, "E0978"},
       {{"plot", plotted_report(), "-c", "gyro_z", "--width", "5", "-o", out}, 2, "E0981"},
       {{"plot", plotted_report(), "-c", "gyro_z", "--width", "5mm", "-o", out}, 2, "no room"},
-      {{"plot", plotted_report(), "-c", "gyro_z", "--x-range", "3..1", "-o", out}, 2, "E0981"},
+      {{"plot", plotted_report(), "-c", "gyro_z", "--x-range", "3..1", "-o", out}, 2, "E0201"},
       {{"plot", plotted_report(), "-c", "gyro_z", "--kind", "alan", "-o", out}, 2, "allan"},
       {{"plot", (folder / "absent").string(), "-o", out}, 3, "absent"},
   };

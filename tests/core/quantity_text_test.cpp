@@ -3,6 +3,7 @@
 #include "libchar/core/quantity_text.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -150,4 +151,12 @@ TEST_CASE("a range has two ends, and one that is left out is open") {
     CHECK_THROWS_WITH(parse_range(text), Catch::Contains("E0201"));
   }
   CHECK_THROWS_WITH(parse_range("1s..2s", RangeOf::rate_hz), Catch::Contains("E0201"));
+  const Interval above = parse_range("1..", RangeOf::number),
+                 below = parse_range("..-2.5", RangeOf::number);
+  CHECK(above.low == 1);
+  CHECK(std::isinf(above.high));
+  CHECK(below.low == -std::numeric_limits<double>::infinity());
+  CHECK(below.high == -2.5);
+  CHECK_THROWS_WITH(parse_range("3..1", RangeOf::number, "--x-range"),
+                    Catch::StartsWith("--x-range: error E0201: expected LOW..HIGH"));
 }

@@ -14,6 +14,34 @@ TEST_CASE("numbers with few digits") {
   CHECK(number_text(0) == "0");
   CHECK(number_text(std::numeric_limits<double>::quiet_NaN()) == "–");
   CHECK(number_text(9.9999, 3) == "10.0");  // rounding up to the next power of ten
+  CHECK(number_text(0.000123) == "0.0001230");
+}
+
+TEST_CASE("numbers of a sentence: no zeros behind, never an exponent of a program") {
+  CHECK(brief_text(200, 6) == "200");
+  CHECK(brief_text(0.05) == "0.05");
+  CHECK(brief_text(199.997, 6) == "199.997");
+  CHECK(brief_text(1812.4) == "1812");
+  CHECK(brief_text(1.2e-7, 4) == "1.2×10⁻⁷");
+  CHECK(brief_text(-0.0) == "0");
+  CHECK(brief_text(std::numeric_limits<double>::infinity()) == "–");
+  CHECK(power_of_ten(-12) == "10⁻¹²");
+  CHECK(percent_text(0.0037) == "0.37 %");
+  CHECK(percent_text(std::numeric_limits<double>::quiet_NaN()) == "–");
+}
+
+TEST_CASE("how much above the best possible: hundredths of a per cent, then times") {
+  CHECK(excess_text(3e-7) == "0.00 %");
+  CHECK(excess_text(0.0012) == "0.12 %");
+  CHECK(excess_text(0.853) == "85.3 %");
+  CHECK(excess_text(260.7009) == "262 ×");
+  CHECK(excess_text(std::numeric_limits<double>::quiet_NaN()) == "–");
+}
+
+TEST_CASE("intervals: both ends with the digits of the value, infinity in words") {
+  CHECK(interval_text({0.5, 2}, 2) == "0.50 … 2.0");
+  CHECK(interval_text({0.5, std::numeric_limits<double>::infinity()}, 2) == "0.50 … no end");
+  CHECK(interval_text({std::numeric_limits<double>::quiet_NaN(), 2}) == "–");
 }
 
 TEST_CASE("digits follow the uncertainty: two digits of it") {
@@ -26,15 +54,18 @@ TEST_CASE("digits follow the uncertainty: two digits of it") {
 
 TEST_CASE("durations in the unit one would say") {
   CHECK(duration_text(0) == "0 s");
-  CHECK(duration_text(2.5e-6) == "2.50 µs");
+  CHECK(duration_text(2.5e-6) == "2.5 µs");
   CHECK(duration_text(0.0125) == "12.5 ms");
-  CHECK(duration_text(90) == "90.0 s");
-  CHECK(duration_text(600) == "10.0 min");
-  CHECK(duration_text(36000) == "10.0 h");
-  CHECK(duration_text(864000) == "10.0 d");
+  CHECK(duration_text(82e-9) == "82 ns");
+  CHECK(duration_text(1.2e-4, 2) == "120 µs");
+  CHECK(duration_text(2508, 2) == "42 min");
+  CHECK(duration_text(90) == "90 s");
+  CHECK(duration_text(600) == "10 min");
+  CHECK(duration_text(36000) == "10 h");
+  CHECK(duration_text(864000) == "10 d");
   CHECK(place_text(2153.6698) == "2153.67");
   CHECK(place_text(1290550.4) == "1290550");
-  CHECK(duration_text(3.15576e8) == "10.0 years");
+  CHECK(duration_text(3.15576e8) == "10 years");
 }
 
 TEST_CASE("coefficients: value with interval, limit, nothing") {

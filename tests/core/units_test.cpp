@@ -110,6 +110,10 @@ TEST_CASE("habitual units: 1 deg/s·√s is 60 deg/√h, and a datasheet's densi
   CHECK(white[0].symbol == "deg/√h");
   CHECK(white[0].factor == Approx(60).epsilon(1e-14));
   CHECK(white[1].factor == Approx(std::numbers::sqrt2).epsilon(1e-14));
+  CHECK(white[0].reading == Reading::plain);
+  CHECK(white[1].reading == Reading::one_sided);
+  CHECK(white[2].reading == Reading::two_sided);
+  CHECK(habitual_units("bias_instability", "deg/s")[1].reading == Reading::floor);
   CHECK(habitual_units("white_noise", "rad/s")[0].factor ==
         Approx(60 * 180 / std::numbers::pi).epsilon(1e-14));
   CHECK(habitual_units("bias_instability", "deg/s")[0].factor == Approx(3600).epsilon(1e-14));
@@ -125,6 +129,7 @@ TEST_CASE("habitual units: 1 deg/s·√s is 60 deg/√h, and a datasheet's densi
   REQUIRE(pressure.size() == 1);
   CHECK(pressure[0].factor == Approx(std::numbers::sqrt2).epsilon(1e-14));
   CHECK(pressure[0].symbol == "hPa/√Hz");
+  CHECK(pressure[0].reading == Reading::one_sided);
   CHECK(habitual_units("bias_instability", "hPa")[0].symbol == "hPa");
   CHECK(habitual_units("white_noise", "furlong").empty());
   CHECK(habitual_units("ramp", "V").empty());

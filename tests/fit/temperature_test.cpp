@@ -135,7 +135,7 @@ TEST_CASE("temperature: one that says nothing is refused in a sentence") {
   };
   for (std::size_t i = 10'000; i < 20'000; ++i)
     t.samples[i] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(what().find("is missing for 1000 s from 1000 s on") != std::string::npos);
+  CHECK(what().find("is missing for 16.7 min from 1000 s on") != std::string::npos);
   t.samples.assign(kWarmSamples, 21.5);
   CHECK(what().find("is constant, 21.5 throughout") != std::string::npos);
   t.samples.assign(kWarmSamples, std::numeric_limits<double>::quiet_NaN());

@@ -72,7 +72,7 @@ TEST_CASE("property: a decimal for YAML reads back to its bits and has a point")
 TEST_CASE("property: seventeen digits read back to the bits") {
   holds([] {
     const double x = *any_finite();
-    RC_ASSERT(same_bits({parse_double(significant(x, 17)).value()}, {x}));
+    RC_ASSERT(same_bits({rounded(x, 17)}, {x}));
   });
 }
 TEST_CASE("property: a number with anything behind it is no number") {
@@ -86,7 +86,7 @@ TEST_CASE("property: significant digits are as near as they say") {
   holds([](unsigned char digits) {
     const double x = *between(1e-3, 1e3);
     const int n = 1 + digits % 15;
-    RC_ASSERT(near(parse_double(significant(x, n)).value(), x, 0.51 * std::pow(10, 1 - n)));
+    RC_ASSERT(near(rounded(x, n), x, 0.51 * std::pow(10, 1 - n)));
   });
 }
 TEST_CASE("property: moments do not depend on the pieces of a record") {

@@ -6,6 +6,7 @@
 
 using namespace libchar;
 using Catch::Contains;
+using Catch::StartsWith;
 
 TEST_CASE("sweeps: a value, a list, a range") {
   const Sweep list = parse_sweep("minque.gamma=.9,0.99,.999", "--sweep");
@@ -27,9 +28,11 @@ TEST_CASE("sweeps: refused with the form that is right") {
                            "minque.gamma=",
                            "minque.gamma=.9,",
                            "minque.gamma=a",
-                           "perceptron.neurons=9..3",
-                           "minque.gamma=.9....99"})
+                           "perceptron.neurons=9..",
+                           "minque.gamma=.9...99"})
     CHECK_THROWS_WITH(parse_sweep(text, "--sweep"), Contains("E0963") && Contains("--sweep"));
+  for (const char* text : {"perceptron.neurons=9..3", "minque.gamma=.9....99"})
+    CHECK_THROWS_WITH(parse_sweep(text, "--sweep"), StartsWith("--sweep: error E0201"));
   CHECK_THROWS_WITH(parse_sweep("minque.gamma=.9,.99", "--set", 1), Contains("E0963"));
   CHECK_THROWS_WITH(parse_sweep("minque.gama=.9", "--sweep"), Contains("gamma"));
   CHECK_THROWS_WITH(parse_sweep("minke.gamma=.9", "--sweep"), Contains("minque"));

@@ -162,11 +162,11 @@ TEST_CASE("html: of a thousand channels those are drawn that ask for a look, and
     const ChannelView& c = view.channels[i];
     const bool here = test::count(page, "id=\"channel-" + std::to_string(i) + "\"") == 1;
     shown += here ? 1 : 0;
-    if (here) least_shown = std::min(least_shown, c.summary.rating);
+    if (here) least_shown = std::min(least_shown, c.judgement.rating);
     CHECK(here == c.in_detail);
   }
   for (const ChannelView& c : view.channels)
-    worst_left_out += !c.in_detail && c.summary.rating > least_shown ? 1 : 0;
+    worst_left_out += !c.in_detail && c.judgement.rating > least_shown ? 1 : 0;
   CHECK(shown == kMostInDetail);
   CHECK(worst_left_out == 0);
   CHECK(test::count(page, "<li class=\"good\">") + test::count(page, "<li class=\"caution\">") +

@@ -10,6 +10,7 @@
 
 #include "analysis_options.hpp"
 #include "libchar/characterize/characterization_view.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/limits.hpp"
 #include "libchar/characterize/runs.hpp"
 #include "libchar/characterize/settings.hpp"
@@ -85,13 +86,17 @@ Characterization characterized(Session& session,
     VerifyOptions how;
     how.seed = verb.seed;
     result.settings.push_back(part_entry("verify", {{"seed", verb.seed}}));
-    outcome.agrees = verify(result, options, how, session.terminal) && outcome.agrees;
+    verify(result, options, how, session.terminal);
   }
   if (verb.pool) result.settings.push_back(part_entry("pool", {{"seed", verb.seed}}));
   session.terminal.clear();
   if (limits) hold_against(*limits, result, outcome);
   report_warnings(session, result.log);
-  for (const ChannelResult& c : result.channels) outcome.any_fit = outcome.any_fit || c.fit;
+  for (const ChannelResult& c : result.channels) {
+    const Judgement judgement = judge(c);
+    outcome.any_fit = outcome.any_fit || !judgement.has(ObjectionKind::no_fit);
+    outcome.agrees = outcome.agrees && !judgement.has(ObjectionKind::simulation);
+  }
   return result;
 }
 
@@ -134,7 +139,7 @@ void run_one_by_one(Session& session,
       documents.push_back(json_report(view));
       continue;
     }
-    print_beside(session, characterization_text(view, table_width()));
+    print_beside(session, characterization_text(view, text_look()));
     say_written(session, paths_of(outputs), removed);
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
@@ -210,7 +215,7 @@ void run_pooled(Session& session,
   all.push_back({verb.folder, runs_files(report, verb.folder)});
   const auto removed = write_folders(session, verb, all);
   if (verb.json) return print(dump_json(runs_json(report)));
-  print_beside(session, runs_text(report));
+  print_beside(session, runs_text(report, text_look()));
   say_written(session, paths_of(all.back().files), removed);
 }
 
@@ -235,7 +240,9 @@ void run_lot(Session& session,
   print_beside(session, fleet_text(report, table_width()));
   for (const Characterization& result : results)
     if (result.limits)
-      print_beside(session, "\n" + printable(result.log.file) + limits_text(*result.limits));
+      print_beside(
+          session,
+          "\n" + printable(result.log.file) + limits_text(*result.limits, text_look().colours));
   say_written(session, files, {});
 }
 

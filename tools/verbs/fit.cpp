@@ -13,6 +13,7 @@
 #include "libchar/core/file_name.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/channel_names.hpp"
@@ -145,7 +146,7 @@ void run_fit(Session& session, const FitVerb& verb) {
   } else {
     for (const ChannelFit& c : fits)
       text += (text.empty() ? "" : "\n") +
-              fit_text(c.channel, c.fit, verb.output.empty() ? table_width() : 0);
+              fit_text(c.channel, c.fit, verb.output.empty() ? text_look() : libchar::TextLook{});
   }
   if (verb.output.empty()) {
     if (verb.json)

@@ -9,6 +9,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/export/exports.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -125,7 +126,8 @@ void run_summary(const Session& session, const ModelVerb& verb) {
     text = dump_json(document);
   } else {
     for (const SensorModel& m : read.models)
-      text += (text.empty() ? "" : "\n") + model_text(m, verb.output.empty() ? table_width() : 0);
+      text += (text.empty() ? "" : "\n") +
+              model_text(m, verb.output.empty() ? text_look() : libchar::TextLook{});
     if (verb.output.empty()) return print_text(text);
   }
   deliver(verb, text);

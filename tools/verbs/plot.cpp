@@ -8,6 +8,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/output_files.hpp"
+#include "libchar/core/quantity_text.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/figure/draw_figure.hpp"
 #include "libchar/figure/figure_data.hpp"
@@ -49,17 +50,7 @@ double length_mm(const std::string& flag, const std::string& text) {
 
 std::optional<Interval> range_of(const std::string& flag, const std::string& text) {
   if (text.empty()) return std::nullopt;
-  const std::size_t dots = text.find("..");
-  if (dots != std::string::npos) {
-    const auto low = parse_double(text.substr(0, dots)), high = parse_double(text.substr(dots + 2));
-    if (low && high && *low < *high) return Interval{*low, *high};
-  }
-  throw Error({ErrorKind::usage,
-               "E0981",
-               flag,
-               "a range was expected: two numbers, the smaller first, with two dots between",
-               text,
-               "such as 0.01..100"});
+  return libchar::parse_range(text, libchar::RangeOf::number, flag);
 }
 
 FigureFormat format_of(const PlotVerb& verb) {

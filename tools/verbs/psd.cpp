@@ -8,8 +8,8 @@
 #include "analysis_options.hpp"
 #include "libchar/characterize/log_pair_spectra.hpp"
 #include "libchar/characterize/log_spectra.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/whole_file.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/report/pair_spectra_text.hpp"
@@ -47,9 +47,9 @@ void run_cross(Session& session, const PsdVerb& verb) {
   for (const std::string& note : cross.cross.notes) session.terminal.note(note);
   session.terminal.note(fmt::format(
       "coherence of independent channels stays below {} with 95 % ({} segments, as {} independent)",
-      significant(cross.cross.significant_coherence, 3),
+      brief_text(cross.cross.significant_coherence, 3),
       cross.cross.segments,
-      significant(cross.cross.effective_segments, 3)));
+      brief_text(cross.cross.effective_segments, 3)));
   write_document(session,
                  cross.log,
                  "cross-spectrum",

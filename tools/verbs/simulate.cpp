@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "fault_help.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/quantity_text.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -62,7 +62,7 @@ void set_length(const SimulateVerb& verb, ArraySimulation& simulation) {
   if (simulation.rate_hz < 1e-9 || simulation.rate_hz > 1e9)
     refuse_simulate(verb.sources[0],
                     "states a sampling rate that is not between 1e-9 and 1e9 Hz",
-                    significant(simulation.rate_hz, 6),
+                    brief_text(simulation.rate_hz, 6),
                     "give --rate");
   if (verb.samples > 0 && verb.duration_s)
     refuse_simulate("--samples", "does not go with --duration", "", "give one of them");

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/result_check.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
@@ -53,7 +54,7 @@ Json check_json(const ResultCheck& check) {
 }
 
 std::string digits_text(double relative) {
-  return std::isfinite(relative) ? fmt::format(", {:.2g} relative", relative) : "";
+  return std::isfinite(relative) ? ", " + brief_text(relative, 2) + " relative" : "";
 }
 
 std::string rerun_text(const Rerun& run) {

@@ -8,7 +8,7 @@
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/missing_samples.hpp"
 #include "libchar/allan/detail/present_sums.hpp"
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -92,13 +92,13 @@ std::vector<AllanPoint> points_of_present(std::span<const double> rate,
 void note_missing(const std::vector<std::uint64_t>& without, AllanCurve& curve) {
   const double share = static_cast<double>(curve.missing) / static_cast<double>(curve.samples);
   if (share > kWorthSaying && of_window_means(deviation_row(curve.type)))
-    curve.notes.push_back(significant(100 * share, 2) +
-                          " % of the samples are missing: means are over those that are there, and "
+    curve.notes.push_back(percent_text(share) +
+                          " of the samples are missing: means are over those that are there, and "
                           "what the others add to the variance is taken off");
   if (without.empty()) return;
-  curve.notes.push_back(
-      "gaps leave no term at " + std::to_string(without.size()) + " averaging times from " +
-      significant(static_cast<double>(without.front()) * curve.dt_s, 4) + " s on");
+  curve.notes.push_back("gaps leave no term at " + std::to_string(without.size()) +
+                        " averaging times from " +
+                        duration_text(static_cast<double>(without.front()) * curve.dt_s) + " on");
 }
 
 }  // namespace libchar

@@ -7,6 +7,7 @@
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -70,12 +71,12 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
   if (too_long > 0)
     notes.push_back(std::to_string(too_long) +
                     " of the listed averaging times left out: longer than the record allows (" +
-                    significant(largest * dt_s, 4) + " s)");
+                    duration_text(largest * dt_s) + ")");
   if (moved > 0)
     notes.push_back(
         std::to_string(moved) +
         " of the listed averaging times moved to the nearest multiple of the sampling interval (" +
-        significant(dt_s, 4) + " s)");
+        duration_text(dt_s) + ")");
   return factors;
 }
 

@@ -25,10 +25,6 @@ struct Fused {
   std::optional<MatrixXd> weights;
 };
 
-bool published(const fusion::Entry& entry) {
-  return entry.description->name.find("published") != std::string_view::npos;
-}
-
 /// Throws Error: the algorithm says why it cannot.
 Fused fused(const fusion::Entry& entry, const StressArray& array) {
   const fusion::Settings settings(entry.options);
@@ -117,7 +113,8 @@ bool knows_places(const fusion::Entry& entry) {
 
 /// Sums of few rounded numbers at an offset of 1e8 hold 8 digits of a deviation of 3.
 double stated_digits(const fusion::Entry& entry, const StressArray& array) {
-  if (published(entry) || (array.reversed && knows_places(entry))) return std::nan("");
+  if (entry.description->as_published || (array.reversed && knows_places(entry)))
+    return std::nan("");
   return array.shift != 0 ? 7 : 9;
 }
 
@@ -141,7 +138,7 @@ void stress_estimates(const fusion::Entry& entry,
   const Fused found = fused(entry, array);
   if (array.related())
     return judge_related(array, found, fused(entry, plain), stated_digits(entry, array), cell);
-  const std::string wrong = what_is_wrong(array, found, published(entry));
+  const std::string wrong = what_is_wrong(array, found, entry.description->as_published);
   judge_held(wrong.empty(), wrong, cell);
 }
 
@@ -155,10 +152,11 @@ void stress_weights_related(const fusion::Entry& entry,
   if (array.reversed) weights = weights.colwise().reverse().eval();
   std::vector<Exact> expected;
   for (const double w : weights.reshaped()) expected.push_back(w);
-  judge_digits(
-      right_digits_together(finite_values(found.weights.value()), expected),
-      published(entry) || (array.reversed && knows_places(entry)) ? std::nan("") : kWeightDigits,
-      cell);
+  judge_digits(right_digits_together(finite_values(found.weights.value()), expected),
+               entry.description->as_published || (array.reversed && knows_places(entry))
+                   ? std::nan("")
+                   : kWeightDigits,
+               cell);
 }
 
 }  // namespace

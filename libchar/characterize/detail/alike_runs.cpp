@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "libchar/characterize/runs.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -89,9 +89,9 @@ void check_runs(std::span<const Characterization> runs) {
       refuse_run(
           run,
           fmt::format("is sampled at {} Hz, and {} at {} Hz: runs of one sensor have one rate",
-                      significant(rate, 6),
+                      brief_text(rate, 6),
                       first.log.file,
-                      significant(other, 6)));
+                      brief_text(other, 6)));
     if (std::none_of(run.channels.begin(), run.channels.end(), [](const ChannelResult& c) {
           return c.fit.has_value();
         }))

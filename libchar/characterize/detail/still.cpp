@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/motion.hpp"
 
 namespace libchar {
@@ -99,14 +99,14 @@ void check_still(const StillOptions& still, const ReadOptions& reading) {
   const Interval& s = *still.stretch_s;
   if (!(s.low >= 0) || !(s.low < s.high))
     refuse("the still stretch does not go from a time to a later one",
-           fmt::format("{} to {} s", significant(s.low, 6), significant(s.high, 6)));
+           fmt::format("{} to {} s", brief_text(s.low, 6), brief_text(s.high, 6)));
 }
 
 std::string stretch_sentence(const Stretch& stretch) {
   if (stretch.whole) return "Nothing moves in the recording: all of it was analysed.";
   std::string text = fmt::format("Only the stretch from {} to {} s was analysed, {}",
-                                 significant(stretch.from_s, 6),
-                                 significant(stretch.to_s, 6),
+                                 brief_text(stretch.from_s, 6),
+                                 brief_text(stretch.to_s, 6),
                                  stretch.found ? "the longest in which nothing moves" : "as asked");
   if (stretch.moving.empty()) return text + ".";
   const std::size_t shown = std::min<std::size_t>(stretch.moving.size(), 6);

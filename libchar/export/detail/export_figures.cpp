@@ -16,6 +16,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/term_cells.hpp"
 
 namespace libchar {
 namespace {
@@ -50,11 +51,11 @@ AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
 
 std::string said(const AxisNumber& n) {
   if (n.value)
-    return significant(*n.value, 4) + (n.driven ? " (Gauss-Markov driving density)"
-                                       : n.status == Status::undetermined ? " (undetermined)"
-                                       : n.status == Status::misfit       ? " (misfit)"
-                                                                          : "");
-  if (n.limit) return "<= " + significant(*n.limit, 3);
+    return shortest(rounded(*n.value, 4)) + (n.driven ? " (Gauss-Markov driving density)"
+                                             : n.status == Status::undetermined ? " (undetermined)"
+                                             : n.status == Status::misfit       ? " (misfit)"
+                                                                                : "");
+  if (n.limit) return "<= " + shortest(rounded(*n.limit, 3));
   return "unknown";
 }
 
@@ -219,9 +220,10 @@ GaussMarkov own_process(const PlacedModel& placed, const ExportOptions& options)
   out.correlation_s = options.correlation_s.value_or(m.gauss_markov.tau_s);
   out.driving = driving_density(m.gauss_markov) * placed.to_si * options.inflate;
   out.steady_sd = out.driving * std::sqrt(out.correlation_s / 2);
-  out.origin = fmt::format("Gauss-Markov process of the record, sigma {}, tau {} s",
-                           significant(m.gauss_markov.sigma * placed.to_si * options.inflate, 4),
-                           significant(m.gauss_markov.tau_s, 4));
+  out.origin =
+      fmt::format("Gauss-Markov process of the record, sigma {}, tau {} s",
+                  shortest(rounded(m.gauss_markov.sigma * placed.to_si * options.inflate, 4)),
+                  shortest(rounded(m.gauss_markov.tau_s, 4)));
   if (options.correlation_s) out.origin += "; its driving density with your correlation time";
   for (const Term term : {Term::flicker, Term::walk})
     if (m[term].value.value_or(0) > 0)
@@ -249,8 +251,8 @@ GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options
     out.origin = fmt::format(
         "bias_instability {} as the maximum of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, "
         "steady state 1.0760 B{}",
-        significant(b, 4),
-        significant(out.correlation_s * kPeakTau, 4),
+        shortest(rounded(b, 4)),
+        shortest(rounded(out.correlation_s * kPeakTau, 4)),
         k > 0 ? "; random_walk is left out" : "");
     return out;
   }
@@ -304,7 +306,7 @@ double rate_of(const SensorTriad& triad, std::vector<std::string>& notes) {
   if (differ)
     notes.push_back(fmt::format("the axes of the {} have different rates; {} Hz is used",
                                 triad.kind,
-                                significant(rate, 6)));
+                                shortest(rounded(rate, 6))));
   return rate;
 }
 
@@ -327,7 +329,7 @@ ImuFigures imu_figures(const SensorGroup& group,
       notes.push_back(fmt::format(
           "{} was not detected; its upper 95 % limit {} is written, for {} needs a number > 0",
           key,
-          significant(*figure.value, 3),
+          shortest(rounded(*figure.value, 3)),
           consumer));
     return figure;
   };
@@ -341,8 +343,8 @@ ImuFigures imu_figures(const SensorGroup& group,
     notes.push_back(
         fmt::format("gyroscope ({} Hz) and accelerometer ({} Hz) have different rates; the file "
                     "names the first",
-                    significant(out.gyroscope_rate_hz, 6),
-                    significant(out.accelerometer_rate_hz, 6)));
+                    shortest(rounded(out.gyroscope_rate_hz, 6)),
+                    shortest(rounded(out.accelerometer_rate_hz, 6))));
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/version.hpp"
 #include "libchar/export/detail/consumer_rows.hpp"
@@ -58,8 +59,7 @@ std::string axes_said(AxisChoice axes) {
 }  // namespace
 
 std::string export_number(double value) {
-  const auto rounded = parse_double(fmt::format("{:.9e}", value));
-  return shortest_yaml(rounded ? *rounded : value);
+  return shortest_yaml(rounded(value, 10));
 }
 
 std::string export_list(const std::array<double, 3>& values) {

@@ -46,7 +46,7 @@ class KfGinsWriter {
       if (std::abs(process.correlation_s / common_s_ - 1) > 1e-6 && process.driving > 0)
         origins[i] +=
             fmt::format("; correlation time {} s replaced by corrtime, driving density kept",
-                        significant(process.correlation_s, 4));
+                        shortest(rounded(process.correlation_s, 4)));
       if (process.driving == 0)
         out_.notes.push_back(fmt::format("{} {}: 0 ({})", key, "xyz"[i], process.origin));
     }

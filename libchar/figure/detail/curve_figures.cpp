@@ -11,6 +11,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 
 namespace libchar {
@@ -414,7 +415,12 @@ Chart residuals_figure(std::span<const FigureSource> sources, const FigureOption
            .rows = {}};
   out.y = {.title = "Residual [standard deviations]", .low = -top, .high = top, .rows = {}};
   set_ends(out.x, x, options.x_range);
-  if (options.y_range) set_ends(out.y, Extent(false), options.y_range);
+  if (options.y_range) {
+    Extent y(false);
+    y.take(-top);
+    y.take(top);
+    set_ends(out.y, y, options.y_range);
+  }
   out.series.push_back(residual_band(out.x));
   std::size_t beyond = 0;
   for (std::size_t k = 0; k < chosen.size(); ++k) {

@@ -44,8 +44,11 @@ void Extent::take_near(double value, const Extent& inner, double factor) {
 }
 
 void set_ends(FigureAxis& axis, const Extent& extent, const std::optional<Interval>& range) {
-  axis.low = range ? range->low : extent.empty() ? 0.1 : extent.low();
-  axis.high = range ? range->high : extent.empty() ? 10 : extent.high();
+  // An open end is where the data end.
+  axis.low = range && std::isfinite(range->low) ? range->low : extent.empty() ? 0.1 : extent.low();
+  axis.high = range && std::isfinite(range->high) ? range->high
+              : extent.empty()                    ? 10
+                                                  : extent.high();
   if (axis.low < axis.high) return;
   Extent wider(axis.log);
   wider.take(axis.low);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/figure/detail/sheet.hpp"
 
 namespace libchar {
@@ -237,17 +238,16 @@ void draw_bar_notes(Sheet& sheet) {
 }
 
 [[noreturn]] void refuse_size(double width_mm, double height_mm) {
-  throw Error(
-      {ErrorKind::usage,
-       "E0981",
-       "",
-       fmt::format("a page of {:.4g} × {:.4g} mm has no room for a plot with its axes, or is "
-                   "larger than {} mm",
-                   width_mm,
-                   height_mm,
-                   kLargestMm),
-       "",
-       "one column is 85 mm wide, two are 178 mm"});
+  throw Error({ErrorKind::usage,
+               "E0981",
+               "",
+               fmt::format("a page of {} × {} mm has no room for a plot with its axes, or is "
+                           "larger than {} mm",
+                           brief_text(width_mm, 4),
+                           brief_text(height_mm, 4),
+                           kLargestMm),
+               "",
+               "one column is 85 mm wide, two are 178 mm"});
 }
 
 Sheet make_sheet(const Chart& figure, const DrawingOptions& options, double legend, Axes& axes) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
@@ -205,9 +204,8 @@ Chart window_figure(std::span<const FigureSource> sources, const FigureOptions& 
   out.y.log = true;
   const double window_s = replay.map.number_or("window_s", kNone);
   set_value_axis(out,
-                 std::isfinite(window_s)
-                     ? fmt::format("RMS error in windows of {} s", significant(window_s, 4))
-                     : "RMS error in a window",
+                 std::isfinite(window_s) ? "RMS error in windows of " + duration_text(window_s)
+                                         : "RMS error in a window",
                  replay.unit,
                  y,
                  options,

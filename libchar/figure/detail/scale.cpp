@@ -20,13 +20,6 @@ double round_step(double least) {
   return 10 * power;
 }
 
-std::string plain_zeros(std::string text) {
-  if (text.find('.') == std::string::npos || text.find("×") != std::string::npos) return text;
-  while (text.back() == '0') text.pop_back();
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
 std::string minus_sign(const std::string& text) {
   return text.starts_with('-') ? "−" + text.substr(1) : text;
 }
@@ -46,18 +39,14 @@ std::vector<Tick> even_ticks(const FigureAxis& axis, double length, double apart
   const int digits = digits_for_steps(std::max(std::fabs(axis.low), std::fabs(axis.high)), step);
   for (double k = std::ceil(axis.low / step - 1e-9); k * step <= axis.high + 1e-9 * step; ++k) {
     const double value = k == 0 ? 0 : k * step;
-    out.push_back({value, minus_sign(plain_zeros(number_text(value, digits))), true});
+    out.push_back({value, minus_sign(brief_text(value, digits)), true});
     if (out.size() > 1000) break;  // an axis whose steps a double does not resolve
   }
   return out;
 }
 
 std::string decade_label(int exponent, bool plain) {
-  if (plain) return plain_zeros(number_text(std::pow(10.0, exponent), 1));
-  static constexpr const char* kRaised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string out = exponent < 0 ? "10⁻" : "10";
-  for (const char c : std::to_string(std::abs(exponent))) out += kRaised[c - '0'];
-  return out;
+  return plain ? brief_text(std::pow(10.0, exponent), 1) : power_of_ten(exponent);
 }
 
 std::vector<Tick> log_ticks(const FigureAxis& axis, double length, double apart) {
@@ -74,7 +63,7 @@ std::vector<Tick> log_ticks(const FigureAxis& axis, double length, double apart)
       out.push_back({value,
                      !worded  ? ""
                      : decade ? decade_label(e, plain)
-                              : plain_zeros(number_text(value, 1)),
+                              : brief_text(value, 1),
                      decade});
     }
   return out;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/flicker_phase_means.hpp"
 #include "libchar/fit/detail/gauss_markov_means.hpp"
@@ -155,12 +156,11 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
   if (band.quantized)
     fit.remedies.push_back({"quantization", alarm, "quantization noise added to the model", 1});
   if (band.low_pass)
-    fit.remedies.push_back(
-        {"bandwidth",
-         alarm,
-         fmt::format("first-order low-pass with corner {:.4g} Hz added to the model",
-                     band.low_pass->corner_hz),
-         1});
+    fit.remedies.push_back({"bandwidth",
+                            alarm,
+                            fmt::format("first-order low-pass with corner {} Hz added to the model",
+                                        brief_text(band.low_pass->corner_hz, 4)),
+                            1});
   if (band.filter.kind != NoiseShape::Kind::none)
     fit.remedies.push_back({"shape",
                             alarm,
@@ -184,8 +184,8 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
   if (left_out > 0 && band.filter.kind == NoiseShape::Kind::none)
     fit.remedies.push_back({"band",
                             alarm,
-                            fmt::format("coefficients from below {:.4g} Hz, {} of {} bins left out",
-                                        band.top_hz,
+                            fmt::format("coefficients from below {} Hz, {} of {} bins left out",
+                                        brief_text(band.top_hz, 4),
                                         left_out,
                                         bins.size()),
                             left_out});

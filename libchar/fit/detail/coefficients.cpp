@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/bounds.hpp"
 #include "libchar/fit/detail/profile.hpp"
 #include "libchar/fit/detail/scoring.hpp"
@@ -200,9 +201,9 @@ void report_bounds(const TermSet& fitted, NoiseFit& fit) {
     if (*bound[i] > kUndeterminedAbove && term.status == Status::detected) {
       term.status = Status::undetermined;
       fit.sentences.push_back(
-          fmt::format("The record is too short for {}: at best it is known to {:.0f} % (1 sd).",
+          fmt::format("The record is too short for {}: at best it is known to {} (1 sd).",
                       long_name(static_cast<Term>(i)),
-                      100 * *bound[i]));
+                      percent_text(*bound[i])));
     }
     term.seconds_for_10_percent =
         seconds_for(static_cast<Term>(i), 0.10, fit.theta, fit.rate_hz, fitted);

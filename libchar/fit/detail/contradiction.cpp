@@ -13,6 +13,7 @@
 #include "libchar/allan/confidence.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/chi_square.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/shaped_curves.hpp"
 
@@ -89,13 +90,13 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
           of_process ? kTerms : worst->term,
           0,
           fmt::format(
-              "At an averaging time of {:.3g} s the fitted curve stands at {:.3g}, the "
-              "measured Allan deviation within {:.3g} … {:.3g} (99.7 %): "
+              "At an averaging time of {} the fitted curve stands at {}, the "
+              "measured Allan deviation within {} … {} (99.7 %): "
               "{} is not borne out there and is marked undetermined.",
-              worst->tau_s,
-              worst->model,
-              worst->measured.low,
-              worst->measured.high,
+              duration_text(worst->tau_s),
+              brief_text(worst->model),
+              brief_text(worst->measured.low),
+              brief_text(worst->measured.high),
               of_process ? "the Gauss-Markov process" : long_name(static_cast<Term>(worst->term))));
   }
   if (!fit.second_opinion || !(fit.goodness.p < 1e-3)) return;
@@ -111,10 +112,10 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
             t,
             *second,
             fmt::format("{} is marked undetermined: the fit does not describe the record, and the "
-                        "Allan curve gives {:.3g} instead of {:.3g}.",
+                        "Allan curve gives {} instead of {}.",
                         long_name(static_cast<Term>(t)),
-                        *second,
-                        *first.value));
+                        brief_text(*second),
+                        brief_text(*first.value)));
   }
 }
 

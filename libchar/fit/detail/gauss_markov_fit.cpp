@@ -17,6 +17,7 @@
 #include <limits>
 
 #include "libchar/core/dense.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/detail/coefficients.hpp"
 #include "libchar/fit/detail/gauss_markov_means.hpp"
 #include "libchar/fit/detail/profile.hpp"
@@ -301,9 +302,9 @@ void report_joint_bounds(const Mixture& log_theta, NoiseFit& fit) {
     term.status = Status::undetermined;
     fit.sentences.push_back(
         fmt::format("The record is too short for {} beside a Gauss-Markov process: at best it is "
-                    "known to {:.0f} % (1 sd).",
+                    "known to {} (1 sd).",
                     long_name(static_cast<Term>(i)),
-                    100 * *term.bound));
+                    percent_text(*term.bound)));
   }
 }
 
@@ -325,7 +326,8 @@ void empty_lent_column(NoiseFit& fit) {
 }
 
 std::string process_text(double sigma, double tau_s) {
-  return fmt::format("standard deviation {:.3g}, correlation time {:.3g} s", sigma, tau_s);
+  return fmt::format(
+      "standard deviation {}, correlation time {}", brief_text(sigma), duration_text(tau_s));
 }
 
 }  // namespace

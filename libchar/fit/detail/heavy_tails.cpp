@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/remedies.hpp"
 
 namespace libchar {
@@ -29,9 +30,9 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
   if (wider > 1.05)
     fit.sentences.push_back(
         fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences "
-                    "{:.3g} instead of 3): the interval of N is {:.2g} times as wide for it.",
-                    difference_kurtosis,
-                    wider));
+                    "{} instead of 3): the interval of N is {} times as wide for it.",
+                    brief_text(difference_kurtosis),
+                    brief_text(wider, 2)));
 }
 
 }  // namespace libchar

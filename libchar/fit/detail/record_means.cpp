@@ -72,9 +72,9 @@ void report_temperature(const TemperatureEffect& effect, const FitOptions& optio
   if (effect.order == 0) return;
   fit.remedies.push_back(
       {"temperature",
-       fmt::format("2 ln L rises by {:.1f}, by chance with probability {:.2g}; asked for",
+       fmt::format("2 ln L rises by {:.1f}, by chance with probability {}; asked for",
                    effect.gain,
-                   effect.p),
+                   brief_text(effect.p, 2)),
        fmt::format("a polynomial of order {} taken out of the record before the noise was fitted",
                    effect.order),
        1});
@@ -99,9 +99,9 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
   fit.events = search.events;
   for (const Event& event : fit.events)
     fit.remedies.push_back({std::string(event_name(event.kind)),
-                            fmt::format("score {:.3g}, above {:.3g} by chance in 0.3 % of records",
-                                        event.score,
-                                        event.threshold),
+                            fmt::format("score {}, above {} by chance in 0.3 % of records",
+                                        brief_text(event.score),
+                                        brief_text(event.threshold)),
                             "taken out of the record before the noise was fitted",
                             1});
 }

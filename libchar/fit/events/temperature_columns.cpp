@@ -12,6 +12,7 @@
 #include "libchar/core/chi_square.hpp"
 #include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fit/events/regression.hpp"
 #include "libchar/spectrum/fft.hpp"
 
@@ -44,11 +45,11 @@ void bridge_temperature(std::vector<double>& value, const std::string& name, dou
     before = t;
   }
   if (longest * 10 > n)
-    refuse_temperature(fmt::format("the temperature {} is missing for {:.4g} s from {:.4g} s on, "
+    refuse_temperature(fmt::format("the temperature {} is missing for {} from {} s on, "
                                    "more than a tenth of the record",
                                    name,
-                                   static_cast<double>(longest) * step_s,
-                                   static_cast<double>(longest_at) * step_s),
+                                   duration_text(static_cast<double>(longest) * step_s),
+                                   place_text(static_cast<double>(longest_at) * step_s)),
                        "read the stretch where it is present with `from_s` and `to_s`");
 }
 
@@ -82,10 +83,10 @@ TemperatureSeries temperature_series(const TemperatureRecord& temperature,
                                    kFewestTemperatures),
                        "");
   if (!(out.range.low < out.range.high))
-    refuse_temperature(fmt::format("the temperature {} is constant, {:.6g} throughout: what it "
+    refuse_temperature(fmt::format("the temperature {} is constant, {} throughout: what it "
                                    "does cannot be seen",
                                    temperature.name,
-                                   out.range.low),
+                                   brief_text(out.range.low, 6)),
                        "");
   bridge_temperature(out.value, temperature.name, series.step_s);
   for (const double value : out.value) out.mean += (value - out.range.low);

@@ -93,7 +93,8 @@ struct BlindCalibrationPublished {
                                            .title = "Blind calibration as published, then the mean",
                                            .source = "[RV 3.5]",
                                            .complexity = "O(n)",
-                                           .needs = {.min_channels = 2}};
+                                           .needs = {.min_channels = 2},
+                                           .as_published = true};
   static constexpr std::array options{
       Option{"reference_channel",
              "",

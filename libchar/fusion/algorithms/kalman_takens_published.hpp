@@ -21,7 +21,8 @@ struct KalmanTakensPublished {
                                            .title = "Kalman-Takens as published",
                                            .source = "[RV 3.8]",
                                            .complexity = "O(n + d m), m training instants",
-                                           .needs = {.noise_levels = true}};
+                                           .needs = {.noise_levels = true},
+                                           .as_published = true};
   static constexpr std::array options{
       Option{"dimension", "samples", 6, 1, 64, "d: instants that the past is compared over", true},
       Option{"neighbours", "", 20, 1, 256, "M: stretches that predict", true},

@@ -129,7 +129,8 @@ struct LeastSquaresOf : ReferenceWeightedMean {
                                .source = "[RV 3.6]",
                                .complexity = "O(n)",
                                .needs = kNeeds,
-                               .learning_complexity = "O(n^2)"}
+                               .learning_complexity = "O(n^2)",
+                               .as_published = true}
                  : Description{.name = "least-squares",
                                .title = "Least squares, weights sum to one",
                                .source = "[RV 3.6]",

@@ -29,7 +29,8 @@ struct MinquePublished {
       .needs = {.min_channels = 3,
                 .max_channels = kMostPaired,
                 .more_than_inputs = 2,
-                .accepts_missing = true}};
+                .accepts_missing = true},
+      .as_published = true};
   static constexpr std::array options{
       Option{"gamma", "", 0.999, 0.5, 0.9999999, "memory of the moments: 1/(1 - gamma) instants"},
       Option{"about_zero",

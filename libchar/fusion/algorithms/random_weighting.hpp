@@ -42,7 +42,8 @@ struct RandomWeightingPublished {
                                            .title = "Random weighting as published",
                                            .source = "[RV 3.9]",
                                            .complexity = "O(n)",
-                                           .needs = {.min_channels = 2}};
+                                           .needs = {.min_channels = 2},
+                                           .as_published = true};
   static constexpr std::array options{
       Option{"reference_channel",
              "",

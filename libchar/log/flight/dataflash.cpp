@@ -14,6 +14,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/flight/dataflash_listing.hpp"
@@ -296,10 +297,10 @@ void DataflashReader::finish(Warnings& warnings) {
   warnings.add(
       "bursts",
       fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a "
-                  "spectrum, no good for Allan deviations beyond {} s",
+                  "spectrum, no good for Allan deviations beyond {}",
                   content.burst_samples,
-                  significant(content.burst_rate_hz, 6),
-                  significant(content.burst_samples / content.burst_rate_hz, 3)),
+                  brief_text(content.burst_rate_hz, 6),
+                  duration_text(content.burst_samples / content.burst_rate_hz)),
       "",
       content.bursts);
 }

@@ -228,8 +228,9 @@ void DataflashFormats::take_multiplier(const DataflashKind& kind, std::span<cons
   double value = 0;
   read_numbers(body.data() + factor->byte, 0, {NumberType::f64, false}, {&value, 1});
   // Written as doubles, many are floats that were widened: 1e-6 stands as 9.999999974752427e-07.
-  const auto rounded = parse_double(significant(value, 7));
-  if (rounded && *rounded > 0) multipliers_[static_cast<char>(body[id->byte])] = *rounded;
+  const double short_of_it = rounded(value, 7);
+  if (std::isfinite(value) && short_of_it > 0)
+    multipliers_[static_cast<char>(body[id->byte])] = short_of_it;
 }
 
 void DataflashFormats::apply_units() {

@@ -10,6 +10,7 @@
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/lanes.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -218,28 +219,30 @@ void TimeGrid::say_pattern(const FirstInterval& found) {
     case StampPattern::coarse:
       warnings_.add("coarse_stamps",
                     fmt::format("the stamps are rounded to a coarse clock and keep to one line at "
-                                "{:.5g} Hz: rows are spaced evenly (`rate_hz` {:.5g} takes the "
+                                "{} Hz: rows are spaced evenly (`rate_hz` {} takes the "
                                 "longer steps as gaps)",
-                                span_hz,
-                                step_hz));
+                                brief_text(span_hz, 5),
+                                shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::packets:
       warnings_.add("packets",
                     fmt::format("the stamps are those of packets: rows are spaced evenly at "
-                                "{:.5g} Hz, rows over time (`rate_hz` {:.5g}, the rate inside a "
+                                "{} Hz, rows over time (`rate_hz` {}, the rate inside a "
                                 "packet, takes the rest as gaps)",
-                                span_hz,
-                                step_hz));
+                                brief_text(span_hz, 5),
+                                shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::disputed:
       fail(pending_.front(),
            0,
            "E0324",
-           fmt::format("two sampling rates: most stamps follow each other at {:.5g} Hz, rows over "
-                       "time give {:.5g} Hz, and gaps do not explain it",
-                       step_hz,
-                       span_hz),
-           fmt::format("`rate_hz` {:.5g} or `rate_hz` {:.5g} decides", step_hz, span_hz));
+           fmt::format("two sampling rates: most stamps follow each other at {} Hz, rows over "
+                       "time give {} Hz, and gaps do not explain it",
+                       brief_text(step_hz, 5),
+                       brief_text(span_hz, 5)),
+           fmt::format("`rate_hz` {} or `rate_hz` {} decides",
+                       shortest(rounded(step_hz, 5)),
+                       shortest(rounded(span_hz, 5))));
   }
 }
 
@@ -359,11 +362,11 @@ double TimeGrid::even_interval() {
     return usual;
   const double spanned = stamped / static_cast<double>(last_.index);
   warnings_.add("uneven_sampling",
-                fmt::format("long stretches of the log keep {:.5g} Hz, rows over time are {:.5g} "
+                fmt::format("long stretches of the log keep {} Hz, rows over time are {} "
                             "Hz, which is used: the sampling is uneven, and times on the axes are "
                             "off by that",
-                            1e9 / usual,
-                            1e9 / spanned));
+                            brief_text(1e9 / usual, 5),
+                            brief_text(1e9 / spanned, 5)));
   return spanned;
 }
 
@@ -397,16 +400,15 @@ void TimeGrid::finish(LogInfo& info) {
   time.max_deviation_s = deviation.largest * 1e-9;
   if (interval > 0 && deviation.robust > 0.1 * interval)
     warnings_.add("jitter",
-                  fmt::format("stamps scatter by {:.0f} % of the sampling interval: the samples "
+                  fmt::format("stamps scatter by {} of the sampling interval: the samples "
                               "are treated as evenly spaced",
-                              100 * deviation.robust / interval));
+                              percent_text(deviation.robust / interval)));
   if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > 0.01)
-    warnings_.add(
-        "rate_ignored",
-        fmt::format("the stamps give {:.6g} Hz; the rate of {:.6g} Hz that was given is not "
-                    "used (`time_column` none ignores the stamps)",
-                    1e9 / interval,
-                    *options_.rate_hz));
+    warnings_.add("rate_ignored",
+                  fmt::format("the stamps give {} Hz; the rate of {} Hz that was given is not "
+                              "used (`time_column` none ignores the stamps)",
+                              brief_text(1e9 / interval, 6),
+                              brief_text(*options_.rate_hz, 6)));
 }
 
 }  // namespace libchar

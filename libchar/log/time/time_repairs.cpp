@@ -11,6 +11,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/log/time/grid.hpp"
 
 namespace libchar {
@@ -267,12 +268,11 @@ void TimeGrid::watch_rate(const Pending& front, std::size_t row, double ratio) {
     odd_.place = row > 0 ? place(front, row - 1) : end_of_block_;
   }
   if (++odd_.times != kRateRun) return;
-  warnings_.add(
-      "rate_change",
-      fmt::format("the sampling rate changes ({:.6g} to {:.6g} Hz): the grid keeps the first",
-                  1e9 / step_.ns,
-                  1e9 / (step_.ns * ratio)),
-      odd_.place);
+  warnings_.add("rate_change",
+                fmt::format("the sampling rate changes ({} to {} Hz): the grid keeps the first",
+                            brief_text(1e9 / step_.ns, 6),
+                            brief_text(1e9 / (step_.ns * ratio), 6)),
+                odd_.place);
 }
 
 }  // namespace libchar

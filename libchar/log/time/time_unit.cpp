@@ -6,6 +6,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/detail/column_name.hpp"
@@ -122,8 +123,8 @@ std::int64_t unit_of_rate(std::int64_t guess, double step, double stated_hz, con
                fmt::format("the file states {} Hz, and its stamps step by {}, which is {} Hz in {} "
                            "and fits in no unit",
                            shortest(stated_hz),
-                           significant(step, 6),
-                           significant(rate_in(step, guess), 6),
+                           brief_text(step, 6),
+                           brief_text(rate_in(step, guess), 6),
                            unit_name(guess)),
                "",
                "`time_unit` s|ms|us|ns believes the stamps, `time_column` none with `rate_hz` the "
@@ -137,7 +138,7 @@ void warn_of_stated_rate(const TableFront& table, double step, std::int64_t unit
                     "the file states another rate than its stamps have: the stamps are believed",
                     fmt::format("{} Hz stated, {} Hz by the stamps",
                                 shortest(*table.stated_rate_hz),
-                                significant(rate, 6)));
+                                brief_text(rate, 6)));
 }
 
 }  // namespace

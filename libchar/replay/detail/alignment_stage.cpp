@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/fusion/budget_meter.hpp"
 #include "libchar/replay/detail/instants.hpp"
@@ -39,7 +39,7 @@ LearningWindow window_of_alignment(const Scene& scene,
                  "E0903",
                  scene.file,
                  "align: the window holds fewer than two instants of the recording",
-                 fmt::format("from {} s", significant(w.from_s, 6)),
+                 fmt::format("from {} s", brief_text(w.from_s, 6)),
                  ""});
   return out;
 }

@@ -15,6 +15,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
@@ -278,9 +279,9 @@ void Instants::prepare(Progress& progress) {
                  scene_->file,
                  fmt::format("{}: instants at {} Hz have nothing above {} Hz",
                              asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
-                             significant(info_.rate_hz, 6),
-                             significant(most_hz, 6)),
-                 significant(highest_hz, 6),
+                             brief_text(info_.rate_hz, 6),
+                             brief_text(most_hz, 6)),
+                 brief_text(highest_hz, 6),
                  "corners are below half the rate"});
   preparation_.filter = band_filter(asked.from_hz, asked.to_hz, info_.rate_hz);
 }
@@ -298,7 +299,7 @@ void Instants::fit_slow_reference() {
   info_.count = static_cast<std::int64_t>(std::max(0.0, last));
   info_.rate_hz = track_->rate_hz;
   info_.reference_use =
-      fmt::format("the sensors' means over its intervals of {} s", significant(interval_s, 6));
+      fmt::format("the sensors' means over its intervals of {}", duration_text(interval_s, 6));
   note_partial_intervals(length_s);
   if (info_.count == 0)
     throw Error({ErrorKind::input,
@@ -317,9 +318,9 @@ void Instants::note_partial_intervals(double length_s) {
   const double least_s = 0.5 / source_.info().rate_hz;
   std::vector<std::string> parts;
   if (begun_s < 0 && info_.start_s > least_s)
-    parts.push_back(fmt::format("the first {} s", significant(info_.start_s, 6)));
+    parts.push_back(fmt::format("the first {} s", brief_text(info_.start_s, 6)));
   if (ended_s > length_s && length_s - end_s > least_s)
-    parts.push_back(fmt::format("the last {} s", significant(length_s - end_s, 6)));
+    parts.push_back(fmt::format("the last {} s", brief_text(length_s - end_s, 6)));
   if (!parts.empty())
     info_.reference_use +=
         fmt::format("; {} of the recording, only a part of an interval{}, not used",

@@ -9,6 +9,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar {
 namespace {
@@ -27,8 +28,8 @@ std::string or_nothing(const std::string& text) {
 
 std::string words(const TimeWindow& w) {
   return std::isfinite(w.to_s)
-             ? fmt::format("{} s to {} s", significant(w.from_s, 7), significant(w.to_s, 7))
-             : fmt::format("{} s to the end", significant(w.from_s, 7));
+             ? fmt::format("{} s to {} s", brief_text(w.from_s, 7), brief_text(w.to_s, 7))
+             : fmt::format("{} s to the end", brief_text(w.from_s, 7));
 }
 
 bool same_window(const TimeWindow& a, const TimeWindow& b) {
@@ -138,8 +139,8 @@ void compare_own_errors(const ReplaySummary& a, const ReplaySummary& b, Differen
       "the samples or their reference differ (scale, rest, lag or resampling): sensor {} alone has "
       "an RMSE of {} in A, {} in B{}",
       names[0],
-      significant(a.sensors[first].rmse, 7),
-      significant(b.sensors[first].rmse, 7),
+      brief_text(a.sensors[first].rmse, 7),
+      brief_text(b.sensors[first].rmse, 7),
       names.size() > 1 ? fmt::format("; so do {} others", names.size() - 1) : ""));
 }
 
@@ -152,7 +153,7 @@ void compare_references(const ReplaySummary& a, const ReplaySummary& b, Differen
     found.add("use of the reference", a.reference_use, b.reference_use);
   if (!same_number(a.lag_s, b.lag_s))
     found.add(
-        "lag behind the reference", significant(a.lag_s, 6) + " s", significant(b.lag_s, 6) + " s");
+        "lag behind the reference", brief_text(a.lag_s, 6) + " s", brief_text(b.lag_s, 6) + " s");
   if (!same_names("true input", a.inputs, b.inputs, found)) return;
   for (std::size_t j = 0; j < a.inputs.size(); ++j)
     if (a.inputs[j].unit != b.inputs[j].unit)
@@ -165,8 +166,8 @@ std::string words(const FaultSummary& f) {
   return fmt::format("{} {}{} from {} s",
                      f.sensor,
                      f.kind,
-                     std::isfinite(f.value) ? " " + significant(f.value, 6) : "",
-                     significant(f.from_s, 7));
+                     std::isfinite(f.value) ? " " + brief_text(f.value, 6) : "",
+                     brief_text(f.from_s, 7));
 }
 
 void compare_faults(const ReplaySummary& a, const ReplaySummary& b, Differences& found) {
@@ -198,7 +199,7 @@ std::vector<std::string> unlike(const ReplaySummary& a, const ReplaySummary& b) 
   compare_sensors(a, b, found);
   compare_references(a, b, found);
   if (!same_number(a.rate_hz, b.rate_hz))
-    found.add("rate", significant(a.rate_hz, 7) + " Hz", significant(b.rate_hz, 7) + " Hz");
+    found.add("rate", brief_text(a.rate_hz, 7) + " Hz", brief_text(b.rate_hz, 7) + " Hz");
   if (!same_window(a.evaluation, b.evaluation))
     found.add("evaluation", words(a.evaluation), words(b.evaluation));
   else if (a.instants != b.instants)

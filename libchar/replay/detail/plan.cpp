@@ -9,6 +9,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "libchar/replay/detail/plan_sentences.hpp"
 
@@ -167,19 +168,17 @@ void place_warm_up(const Scene& scene, const Instants& instants, ReplayPlan& pla
     plan.warnings.add(
         "learning_before_settled",
         "the learning window ends before the filter has settled: nothing is learnt there",
-        fmt::format("settled after {} s",
-                    significant(static_cast<double>(settled) / instants.info().rate_hz, 4)));
+        fmt::format("settled after {}",
+                    duration_text(static_cast<double>(settled) / instants.info().rate_hz)));
   plan.warm_up = std::max<std::int64_t>(
       std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz), settled - plan.run_from);
   if (plan.warm_up > plan.run_to - plan.run_from - 2)
-    refuse(
-        scene,
-        "E0903",
-        settled > plan.run_from
-            ? "the evaluation ends before the filter has settled"
-            : "warm_up_s: it leaves fewer than two instants of the evaluation to score",
-        fmt::format("{} s",
-                    significant(static_cast<double>(plan.warm_up) / instants.info().rate_hz, 6)));
+    refuse(scene,
+           "E0903",
+           settled > plan.run_from
+               ? "the evaluation ends before the filter has settled"
+               : "warm_up_s: it leaves fewer than two instants of the evaluation to score",
+           duration_text(static_cast<double>(plan.warm_up) / instants.info().rate_hz));
 }
 
 // Seconds from the recording's first sample to instants.
@@ -197,15 +196,15 @@ void place_windows(const Scene& scene,
              "E0903",
              fmt::format("{}: the window begins after the end of the recording, which is at {} s",
                          key,
-                         significant(end_s, 6)),
-             significant(window.from_s, 6));
+                         brief_text(end_s, 6)),
+             brief_text(window.from_s, 6));
     if (std::isfinite(window.to_s) && window.to_s > end_s + 1 / instants.info().rate_hz)
       plan.warnings.add("window_beyond_end",
                         "a window reaches beyond the end of the recording and ends with it",
                         fmt::format("{} to {} s, the end is at {} s",
                                     key,
-                                    significant(window.to_s, 6),
-                                    significant(end_s, 6)));
+                                    brief_text(window.to_s, 6),
+                                    brief_text(end_s, 6)));
   };
   if (learning) {
     check(*learning, "learning");
@@ -230,7 +229,7 @@ void place_windows(const Scene& scene,
           "fault_after_end",
           "a fault begins after the end of the recording and changes nothing",
           fmt::format(
-              "{} from {} s", scene.sensors[fault.sensor].name, significant(fault.from_s, 6)));
+              "{} from {} s", scene.sensors[fault.sensor].name, brief_text(fault.from_s, 6)));
   if (plan.learn_to > plan.run_from && plan.learn_from < plan.run_to)
     plan.warnings.add("learning_in_evaluation",
                       "the evaluation holds instants of the learning window: methods that learn "
@@ -321,7 +320,7 @@ void keep_budget(const ReplayOptions& options, const fusion::Array& live, Replay
                  "E0917",
                  "",
                  "the budget of an algorithm (`budget_s`) must be above zero",
-                 significant(options.budget_s, 6),
+                 duration_text(options.budget_s),
                  "10 s is the default"});
   for (PlannedAlgorithm& a : plan.algorithms)
     if (a.runs() && !a.learns_before() && !a.learns_run()) {

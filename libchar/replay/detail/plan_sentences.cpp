@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/replay/detail/plan.hpp"
 #include "libchar/replay/preparation_words.hpp"
@@ -14,7 +14,7 @@ namespace libchar {
 namespace {
 
 std::string seconds(double s) {
-  return significant(s, 6) + " s";
+  return brief_text(s, 6) + " s";
 }
 
 std::string names_of(const std::vector<PlannedAlgorithm>& algorithms, auto&& wanted) {
@@ -30,13 +30,13 @@ std::string reading(const Scene& scene, const Instants& instants) {
     return fmt::format("simulates {} sensors, {} samples at {} Hz, seed {}, anew for each pass",
                        scene.sensors.size(),
                        source.samples,
-                       significant(source.rate_hz, 6),
+                       brief_text(source.rate_hz, 6),
                        scene.simulate->seed);
   return fmt::format("reads {} of {}: {} samples at {} Hz, {}",
                      plural(source.units.size() + source.reference_units.size(), "channel"),
                      source.logs[0].file,
                      source.samples,
-                     significant(source.rate_hz, 6),
+                     brief_text(source.rate_hz, 6),
                      source.kept ? "once, and keeps them" : "again for each pass");
 }
 
@@ -99,14 +99,13 @@ std::string align(const SceneAlign& align) {
 
 std::string blind_share_text(const PlannedAlgorithm& algorithm) {
   const BlindShare& share = algorithm.blind;
-  return fmt::format("{}: {}, all of it would take about {} s",
+  return fmt::format("{}: {}, all of it would take about {}",
                      algorithm.label,
-                     share.stretches.empty()
-                         ? std::string("left out")
-                         : fmt::format("on {} stretches, {} % of the evaluation",
-                                       share.stretches.size(),
-                                       significant(100 * share.share, 2)),
-                     significant(share.cost_s, 2));
+                     share.stretches.empty() ? std::string("left out")
+                                             : fmt::format("on {} stretches, {} of the evaluation",
+                                                           share.stretches.size(),
+                                                           percent_text(share.share)),
+                     duration_text(share.cost_s, 2));
 }
 
 std::vector<std::string> sentences(const ReplayPlan& plan,
@@ -128,7 +127,7 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
   if (scene.reference) out.push_back(learning(plan));
   out.push_back(fmt::format("evaluation: {} instants at {} Hz from {} to {}",
                             plan.run_to - plan.run_from,
-                            significant(instants.info().rate_hz, 6),
+                            brief_text(instants.info().rate_hz, 6),
                             seconds(plan.evaluation.from_s),
                             seconds(plan.evaluation.to_s)));
   if (plan.warm_up > 0)

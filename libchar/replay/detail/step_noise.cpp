@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/dense.hpp"
 #include "libchar/core/median.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
@@ -129,7 +129,7 @@ void warn_of_noise(const std::vector<std::string>& names,
         std::abs(change) > 2 * std::log(kWorthSaying))
       changes.emplace_back(i, change / 2);
   }
-  const auto times = [](double log_ratio) { return significant(std::exp(log_ratio), 2); };
+  const auto times = [](double log_ratio) { return brief_text(std::exp(log_ratio), 2); };
   if (compared > 1 && changes.size() == compared && high - low < std::log(kWorthSaying))
     return warnings.add("noise_changed_of_all",
                         "all sensors scatter from sample to sample as they did not where this was "

@@ -19,7 +19,7 @@ namespace {
 
 /// To a tenth of a degree, without zeros behind it.
 std::string celsius(double t) {
-  return fmt::format("{:g}", std::round(10 * t) / 10);
+  return brief_text(std::round(10 * t) / 10, 6);
 }
 
 std::string brackets(const Interval& i, double factor = 1, int digits = 3) {

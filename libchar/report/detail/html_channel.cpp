@@ -9,8 +9,9 @@
 
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/characterize/verification.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/power_laws.hpp"
 #include "libchar/report/detail/escape.hpp"
@@ -22,62 +23,62 @@ namespace {
 
 constexpr std::size_t kMostRows = 200;
 
-std::string status_chip(Status status) {
-  switch (status) {
-    case Status::detected:
-      return "<span class=\"chip detected\">detected</span>";
-    case Status::not_detected:
-      return "<span class=\"chip absent\">not detected</span>";
-    case Status::undetermined:
-      return "<span class=\"chip unsure\">undetermined</span>";
-    case Status::misfit:
-      return "<span class=\"chip alarm\">misfit</span>";
-    case Status::given:
-      return "<span class=\"chip\">given</span>";
-    case Status::not_fitted:
-      return "<span class=\"chip\">not fitted</span>";
+std::string_view chip_class(Status status) {
+  switch (tint_of(status)) {
+    case Tint::good:
+      return status == Status::given ? "" : " detected";
+    case Tint::doubtful:
+      return " unsure";
+    case Tint::bad:
+      return " alarm";
+    case Tint::absent:
+      return " absent";
   }
   return "";
 }
 
-std::string in_field_units(const Coefficient& c, std::size_t term, const std::string& unit) {
+std::string status_chip(Status status) {
+  return fmt::format("<span class=\"chip{}\">{}</span>", chip_class(status), status_words(status));
+}
+
+std::string in_field_units(const std::vector<ShownValue>& shown) {
   std::string out;
-  if (!c.value && !c.upper95) return out;
-  for (const HabitualValue& habit : habitual_units(kTermNames[term].key, unit)) {
+  for (const ShownValue& one : shown)
     out += fmt::format("<div><b>{}</b> {} <span class=\"dim\">{}</span></div>",
-                       html_text(value_text(c, habit.factor)),
-                       html_text(habit.symbol),
-                       html_text(habit.name));
-  }
+                       html_text(one.value),
+                       html_text(unit_with_reading(one)),
+                       html_text(one.name));
   return out;
 }
 
-std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::string& unit) {
-  const Coefficient& c = fit.term[t];
-  const TermName& name = kTermNames[t];
-  const std::string whole = coefficient_text(c);
-  const std::string interval =
-      c.value ? "<span class=\"ci\">" + html_text(whole.substr(whole.find('['))) + "</span>" : "";
-  const std::string known = c.value ? "±" + number_text(100 * c.relative_sd, 2) + " %" : "–";
-  std::string out = fmt::format("<tr><th scope=\"row\">{} <b>{}</b></th>",
-                                html_text(term_title(static_cast<Term>(t), unit)),
-                                name.letter);
-  out += card_cell("Value",
+std::string value_cell(const ShownValue& shown) {
+  return card_cell("Value",
                    fmt::format("<b>{}</b> <span class=\"dim\">{}</span>{}",
-                               html_text(value_text(c)),
-                               html_text(shown_term_unit(name.key, unit)),
-                               interval),
+                               html_text(shown.value),
+                               html_text(shown.unit),
+                               interval_span(shown)),
                    "n");
-  out += card_cell("As the field says it", in_field_units(c, t, unit), "");
-  out += card_cell("Status", status_chip(c.status), "");
-  out += card_cell("Known to", html_text(known), "n");
-  out +=
-      card_cell("Best possible", c.bound ? "±" + number_text(100 * *c.bound, 2) + " %" : "–", "n");
-  out += card_cell(
-      "Record for 10 %",
-      c.seconds_for_10_percent ? html_text(duration_text(*c.seconds_for_10_percent)) : "–",
-      "n");
-  return out + "</tr>\n";
+}
+
+std::string cell_or_dash(const char* head, const std::string& text) {
+  return card_cell(head, text.empty() ? "–" : html_text(text), "n");
+}
+
+/// The cells of a coefficient, behind its name.
+std::string coefficient_cells(const TermCells& cells) {
+  return value_cell(cells.own) +
+         card_cell("As the field says it", in_field_units(cells.field), "") +
+         card_cell("Status", status_chip(cells.status), "") +
+         cell_or_dash("Known to", cells.known_to) +
+         cell_or_dash("Best possible", cells.best_possible) +
+         cell_or_dash("Record for 10 %", cells.length_for_10_percent) + "</tr>\n";
+}
+
+std::string coefficient_row(const NoiseFit& fit, std::size_t t, const std::string& unit) {
+  const TermCells cells = term_cells(fit.term[t], static_cast<Term>(t), unit);
+  return fmt::format(
+             "<tr><th scope=\"row\">{} <b>{}</b></th>", html_text(cells.title), cells.letter) +
+         coefficient_cells(cells);
 }
 
 std::string derived_row(const std::string& name,
@@ -98,20 +99,11 @@ std::string derived_row(const std::string& name,
 }
 
 std::string process_row(const char* name, const Coefficient& c, const std::string& unit) {
-  const std::string high = std::isfinite(c.ci95.high) ? number_text(c.ci95.high, 4) : "no end";
-  return fmt::format("<tr><th scope=\"row\">{}</th>", name) +
-         card_cell("Value",
-                   fmt::format("<b>{}</b> <span class=\"dim\">{}</span><span class=\"ci\">[{}, "
-                               "{}]</span>",
-                               html_text(value_text(c)),
-                               html_text(unit),
-                               number_text(c.ci95.low, 4),
-                               high),
-                   "n") +
-         card_cell("As the field says it", "", "") +
-         card_cell("Status", status_chip(c.status), "") +
-         card_cell("Known to", "±" + number_text(100 * c.relative_sd, 2) + " %", "n") +
-         card_cell("Best possible", "–", "n") + card_cell("Record for 10 %", "–", "n") + "</tr>\n";
+  TermCells cells;
+  cells.own = shown_value(c, 1, unit);
+  cells.status = c.status;
+  cells.known_to = known_to(c);
+  return fmt::format("<tr><th scope=\"row\">{}</th>", name) + coefficient_cells(cells);
 }
 
 std::string process_rows(const GaussMarkovFit& process, const std::string& unit) {
@@ -136,7 +128,7 @@ std::string derived_rows(const ChannelView& view, double rate_hz) {
         unit,
         fmt::format("N·√f: what white noise alone gives at f = {} Hz; the samples of this "
                     "recording have a standard deviation of {} {}",
-                    significant(rate_hz, 6),
+                    brief_text(rate_hz, 6),
                     number_text(c.quality.standard_deviation, 4),
                     unit));
   }
@@ -151,10 +143,12 @@ std::string derived_rows(const ChannelView& view, double rate_hz) {
   }
   if (c.fit->bandwidth_hz) {
     const auto& ci = c.fit->bandwidth_ci95;
+    const int digits = ci ? digits_of(*c.fit->bandwidth_hz, *ci) : 4;
     out += derived_row(
         "Bandwidth",
-        number_text(*c.fit->bandwidth_hz, 4),
-        ci ? fmt::format("[{}, {}]", number_text(ci->low, 4), number_text(ci->high, 4)) : "",
+        number_text(*c.fit->bandwidth_hz, digits),
+        ci ? fmt::format("[{}, {}]", number_text(ci->low, digits), number_text(ci->high, digits))
+           : "",
         "Hz",
         "corner of the first-order low-pass that the fit needed");
   }
@@ -168,15 +162,15 @@ std::string power_laws_table(const NoiseFit& fit) {
       "<h4>As a clock: one-sided S<sub>y</sub>(f) = Σ h<sub>α</sub> f<sup>α</sup></h4>\n<div "
       "class=\"wide\"><table>\n" +
       table_head({"Noise type", "Stable32", "α", "h", "95 % interval", "Status"});
-  for (const PowerLaw& law : laws)
+  for (const PowerLaw& law : laws) {
+    const ShownValue h = shown_value(law.h, 1, "");
     out += table_row({std::string(law.name),
                       std::string(law.abbreviation),
                       std::to_string(law.alpha),
-                      value_text(law.h),
-                      law.h.value
-                          ? number_text(law.h.ci95.low, 3) + " … " + number_text(law.h.ci95.high, 3)
-                          : "–",
-                      std::string(name_of(law.h.status))});
+                      h.value,
+                      interval_words(h),
+                      status_words(law.h.status)});
+  }
   return out + "</tbody></table></div>\n";
 }
 
@@ -359,7 +353,7 @@ std::string consumers(const ChannelView& view, double rate_hz) {
     before = &row.consumer;
   }
   return out +
-         "</tbody></table></div>\n<p class=\"note\">f = " + html_text(significant(rate_hz, 6)) +
+         "</tbody></table></div>\n<p class=\"note\">f = " + html_text(brief_text(rate_hz, 6)) +
          " Hz. ≤ stands before an upper 95 % limit of a term that was not detected.</p>\n";
 }
 
@@ -412,11 +406,11 @@ std::string channel_section(const ChannelView& view,
       "<details class=\"channel\" id=\"channel-{}\"{}><summary>{} <b>{}</b>{}</summary>\n",
       index,
       layout.open ? " open" : "",
-      rating_badge(view.summary.rating),
+      rating_badge(view.judgement.rating),
       html_text(c.channel.name),
       view.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
                         : " <span class=\"unit\">" + html_text(view.shown_unit) + "</span>");
-  out += "<p class=\"sentence\">" + html_text(view.summary.sentence) + "</p>\n";
+  out += "<p class=\"sentence\">" + html_text(view.summary) + "</p>\n";
   out += bullet_list(view.cautions, "cautions") + bullet_list(view.beside_terms, "plain");
   if (c.fit) out += bullet_list(c.fit->sentences, "plain");
   if (layout.trace) out += trace_plot(view, index, log);

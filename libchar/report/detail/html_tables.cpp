@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "libchar/core/term_cells.hpp"
 #include "libchar/report/detail/escape.hpp"
 
 namespace libchar {
@@ -28,6 +29,12 @@ std::string card_cell(std::string_view label, const std::string& html, std::stri
                      css_class.empty() ? "" : "\"",
                      html_attribute(label),
                      html);
+}
+
+std::string interval_span(const ShownValue& shown) {
+  return shown.low.empty()
+             ? ""
+             : "<span class=\"ci\">" + html_text(interval_brackets(shown)) + "</span>";
 }
 
 std::string folded(const std::string& summary, const std::string& body, bool open) {

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/readable.hpp"
 #include "libchar/core/text.hpp"
+#include "libchar/core/text_table.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_tables.hpp"
@@ -36,6 +36,13 @@ std::string_view limit_chip(LimitStatus status) {
       return "unsure";
   }
   return "";
+}
+
+std::string judgement_word(LimitStatus status, bool colours) {
+  const Tint tint = status == LimitStatus::pass   ? Tint::good
+                    : status == LimitStatus::fail ? Tint::bad
+                                                  : Tint::doubtful;
+  return tinted(fmt::format("{:<12}", limit_words(status)), tint, colours);
 }
 
 std::string limit_row(const LimitJudgement& j) {
@@ -89,12 +96,12 @@ std::string limits_section(const LimitReport& report) {
          "and passes in 5 % where only an upper limit is known.</p>\n</section>\n";
 }
 
-std::string limits_text(const LimitReport& report) {
+std::string limits_text(const LimitReport& report, bool colours) {
   std::string out = fmt::format("\nlimits{}: {}\n",
                                 report.sensor.empty() ? "" : " of " + printable(report.sensor),
                                 printable(report.verdict));
   for (const LimitJudgement& j : report.judgements)
-    out += fmt::format("  {:<12} {}\n", limit_words(j.status), printable(j.sentence));
+    out += fmt::format("  {} {}\n", judgement_word(j.status, colours), printable(j.sentence));
   return out;
 }
 

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
+#include "libchar/core/term_cells.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/escape.hpp"
@@ -15,16 +15,12 @@
 namespace libchar {
 namespace {
 
-// The first of the field's units where it has a way of its own to say it, else the term's own.
 std::string coefficient_cell(const Coefficient& c, Term term, const std::string& unit) {
   if (!c.value && !c.upper95) return "–";
-  const auto key = kTermNames[static_cast<std::size_t>(term)].key;
-  const auto habits = habitual_units(key, unit);
-  const bool known = habits.size() > 1;
-  const std::string doubt =
-      c.status == Status::undetermined || c.status == Status::misfit ? " ?" : "";
-  return coefficient_text(c, known ? habits[0].factor : 1) + " " +
-         (known ? habits[0].symbol : term_unit(key, unit)) + doubt;
+  const TermCells cells = term_cells(c, term, unit);
+  const ShownValue& shown = headline(cells);
+  return shown.value + (shown.low.empty() ? " " : " " + interval_brackets(shown) + " ") +
+         shown.unit + (doubted(c.status) ? " ?" : "");
 }
 
 }  // namespace
@@ -101,7 +97,7 @@ std::string many_provenance(std::span<const Characterization> recordings,
         "<tr><td class=\"text\">{}</td><td>{}</td><td>{}</td><td class=\"hash\">{}</td></tr>\n",
         html_text(one.log.file),
         count_text(one.log.samples),
-        one.log.time.rate_hz > 0 ? significant(one.log.time.rate_hz, 6) : "unknown",
+        one.log.time.rate_hz > 0 ? brief_text(one.log.time.rate_hz, 6) : "unknown",
         html_text(one.log.sha256.empty() ? "not computed" : one.log.sha256));
   if (!recordings.empty()) out += "</tbody></table></div>\n";
   if (!command.empty())

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html_plots.hpp"
@@ -283,8 +282,8 @@ std::string cost_section(const ReplayView& view) {
          fmt::format(
              "<p>At {} Hz every method takes less than {} of one core: run time decides "
              "nothing here.</p>\n",
-             significant(view.result->rate_hz, 6),
-             percent_text(kCoreThatMatters, 1)) +
+             brief_text(view.result->rate_hz, 6),
+             percent_text(kCoreThatMatters)) +
          folded("Error against run time and memory", all) + "</section>\n";
 }
 

@@ -67,10 +67,6 @@ std::string times_text(double ratio) {
   return (ratio < 10 ? fmt::format("{:.4f}", ratio) : number_text(ratio, 4)) + " ×";
 }
 
-std::string plain_number(double value) {
-  return std::isfinite(value) ? significant(value, 4) : "–";
-}
-
 /// A column of the ranking: its head, and whether it is folded at first.
 struct RankingColumn {
   std::string head;
@@ -138,7 +134,7 @@ std::vector<RankingColumn> ranking_columns(const ReplayView& view) {
                    }});
   }
   out.push_back({"Available", !view.figures.availability, [](A a, const char* css) {
-                   return cell(percent_text(a.availability, 1), a.availability, "", css);
+                   return cell(percent_text(a.availability, 4), a.availability, "", css);
                  }});
   out.push_back({"ns a sample", !view.figures.time_matters, [](A a, const char* css) {
                    return cell(number_text(a.ns_per_sample, 3), a.ns_per_sample, "", css);
@@ -233,7 +229,7 @@ std::string input_row(const AlgorithmView& v, std::size_t j) {
          cell(number_text(e.bias, 3), std::fabs(e.bias), interval(e.bias_ci95)) +
          cell(number_text(e.maximum, 3), e.maximum) +
          cell(duration_text(e.converged_s), e.converged_s) +
-         cell(percent_text(e.availability, 1), e.availability) + "</tr>\n";
+         cell(percent_text(e.availability, 4), e.availability) + "</tr>\n";
 }
 
 std::string input_table(const ReplayView& view, std::size_t j) {
@@ -286,7 +282,7 @@ std::string sensors_table(const ReplayView& view) {
     row.push_back(s.offset == 0 ? "–" : number_text(s.offset, 4));
     row.push_back(s.missing > 0 ? percent_text(s.missing) : "none");
     std::string h;
-    for (const double v : s.h) h += (h.empty() ? "" : ", ") + plain_number(v);
+    for (const double v : s.h) h += (h.empty() ? "" : ", ") + brief_text(v, 4);
     row.push_back(r.scene.tilt ? "–" : h);
     row.push_back(s.constant  ? "never changed"
                   : s.copy_of ? "the same as " + r.sensors[*s.copy_of].name
@@ -354,7 +350,7 @@ std::string fault_row(const ReplayView& view, std::size_t f) {
   const SensorFault& fault = r.faults[f];
   const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
   std::vector<std::string> row = {
-      std::string(name_of(fault.kind)) + (valueless ? "" : " " + plain_number(fault.value)),
+      std::string(name_of(fault.kind)) + (valueless ? "" : " " + brief_text(fault.value, 4)),
       fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
       instant_text(fault.from_s),
       std::isfinite(fault.to_s) ? instant_text(fault.to_s) : "the end"};

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/units.hpp"
 
@@ -29,26 +28,12 @@ std::string with_unit(double value, int digits, const std::string& unit) {
   return unit.empty() || !std::isfinite(value) ? number : number + " " + unit;
 }
 
-std::string percent_text(double share, int digits) {
-  if (!std::isfinite(share)) return "–";
-  const double percent = 100 * share;
-  // A regret of 3e-7 is none: it would be written as a power of ten.
-  if (std::fabs(percent) < 0.005) return "0.00 %";
-  if (std::fabs(percent) >= 1000) return number_text(percent, 4) + " %";
-  return fmt::format("{:.{}f} %", percent, std::fabs(percent) < 10 ? digits : digits > 1 ? 1 : 0);
-}
-
 std::string instant_text(double seconds) {
-  return std::isfinite(seconds) ? significant(seconds, 8) + " s" : "–";
+  return std::isfinite(seconds) ? brief_text(seconds, 8) + " s" : "–";
 }
 
 std::string stretch_text(double from_s, double to_s) {
   return instant_text(from_s) + " … " + (std::isfinite(to_s) ? instant_text(to_s) : "the end");
-}
-
-std::string interval_text(const Interval& interval, int digits) {
-  if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "–";
-  return number_text(interval.low, digits) + " … " + number_text(interval.high, digits);
 }
 
 }  // namespace libchar

@@ -14,13 +14,9 @@ std::string with_unit(double value, int digits, const std::string& unit);
 /// Unit of the first input in its usual spelling, "" where none is stated.
 std::string score_unit(const ReplayResult& result);
 std::string usual_unit(const std::string& unit);
-/// "0.12 %".
-std::string percent_text(double share, int digits = 2);
 /// A point in time, in seconds without trailing zeros: "400 s".
 std::string instant_text(double seconds);
 /// "400 s … 500 s", "600 s … the end".
 std::string stretch_text(double from_s, double to_s);
-/// "0.033 … 0.034"; "–" when it is not known.
-std::string interval_text(const Interval& interval, int digits = 4);
 
 }  // namespace libchar

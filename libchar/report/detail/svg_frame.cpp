@@ -14,9 +14,8 @@ namespace {
 constexpr double kWidth = 760, kHeight = 430, kLeft = 74, kRight = 14, kTop = 12, kBottom = 46;
 
 std::string power_text(int exponent) {
-  const std::string text = number_text(std::pow(10.0, exponent), 1);
-  const std::size_t times = text.find("×");
-  return times == std::string::npos ? text : text.substr(times + std::string("×").size());
+  const bool plain = exponent > -4 && exponent < 6;
+  return plain ? brief_text(std::pow(10.0, exponent), 1) : power_of_ten(exponent);
 }
 
 /// Grid lines at 1 … 9 of each decade; labels at decades, and at 2 and 5 where there are few.

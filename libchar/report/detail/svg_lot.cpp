@@ -93,8 +93,7 @@ std::string opening(const std::string& title) {
 /// As few digits as the number has.
 std::string tick_text(double value) {
   for (int digits = 1; digits < 5; ++digits)
-    if (const auto rounded = parse_double(significant(value, digits));
-        rounded && std::abs(*rounded - value) < 1e-6 * std::abs(value))
+    if (std::abs(rounded(value, digits) - value) < 1e-6 * std::abs(value))
       return number_text(value, digits);
   return number_text(value, 3);
 }

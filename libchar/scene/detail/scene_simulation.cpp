@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_signal.hpp"
@@ -56,8 +56,8 @@ void read_samples(SignalSpec& spec,
                  at,
                  "file",
                  fmt::format("is a recording at {} Hz, and the simulation runs at {} Hz",
-                             significant(rate, 6),
-                             significant(simulation.rate_hz, 6)),
+                             brief_text(rate, 6),
+                             brief_text(simulation.rate_hz, 6)),
                  "give the simulation the rate of the recording");
   spec.samples = std::move(log.samples[0]);
   if (spec.samples.empty()) refuse_scene("E0742", at, "file", "holds no sample");
