@@ -107,7 +107,7 @@ void run_compare(Session& session, const CompareVerb& verb) {
   for (const std::string& report : {verb.a, verb.b})
     refuse_lot_report(
         report,
-        "lots are compared by the fleets they were merged from: sensorchar fleet "
+        "lots are compared as fleets (sensorchar fleet plan LOG… -o A): sensorchar fleet "
         "compare A B, or sensorchar fleet merge A B -o REPORT for one report of both");
   if (is_characterization_report(verb.a) || is_characterization_report(verb.b))
     compare_two_characterizations(session, verb);

@@ -24,9 +24,10 @@ void run_report(const ReportVerb& verb) {
   const TableFormat format = verb.latex ? TableFormat::latex
                              : verb.csv ? TableFormat::csv
                                         : TableFormat::markdown;
-  refuse_lot_report(verb.file,
-                    "its tables are coefficients.csv and index.html beside it; the report of one "
-                    "device is the report.json in its folder below the fleet's results");
+  refuse_lot_report(
+      verb.file,
+      "its tables are coefficients.csv and index.html next to it; index.html links to "
+      "the folder with the report of each device");
   std::string text;
   if (is_characterization_report(verb.file)) {
     text = coefficient_table(read_characterization_report(verb.file), verb.channels, format);
