@@ -198,8 +198,7 @@ void add_characterize_options(VerbOptions& verb, Session& session, AnalysisOptio
   add_still_option(verb, a);
   add_data_options(verb, a);
   add_allan_options(verb, a);
-  add_spectrum_options(
-      verb, a.options.spectrum, a.options.segment_s, &a.options.quarter_segments);
+  add_spectrum_options(verb, a.options.spectrum, a.options.segment_s, &a.options.quarter_segments);
   add_fit_options(verb, a);
 }
 

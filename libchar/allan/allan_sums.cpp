@@ -112,7 +112,8 @@ void join_level(AllanSums& sums, std::size_t index, const AllanLevel& later) {
   level.count += later.count;
 }
 
-/// The last value of a level has just made their number even: with the one before it is a value of the level above.
+/// The last value of a level has just made their number even: with the one before it is a value of
+/// the level above.
 void hand_up_pair(AllanSums& sums, std::size_t index) {
   while (sums.levels[index].count % 2 == 0) {
     const LevelEnd& tail = sums.levels[index].tail;

@@ -62,19 +62,23 @@ struct CharacterizeOptions {
   Wanted wanted;
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
-  /// name of the channel that is the temperature: what it does to the others is taken out before their noise is fitted
+  /// name of the channel that is the temperature: what it does to the others is taken out before
+  /// their noise is fitted
   std::string temperature;
   AllanOptions allan;
   std::vector<DeviationType> more_types;  ///< besides `allan.type`, of the same samples
   WelchOptions spectrum;
-  /// length of a segment where spectrum.segment is 0; 0 = a quarter of a record of at most a leaf (2^20 samples), 2^16 samples of a longer one
+  /// length of a segment where spectrum.segment is 0; 0 = a quarter of a record of at most a leaf
+  /// (2^20 samples), 2^16 samples of a longer one
   double segment_s = 0;
   bool quarter_segments = false;  ///< a quarter of a longer record too
   FitOptions fit;
-  /// Samples kept at a time at most, but for a leaf of one channel: a log of many channels is read several times, and what needs all samples
-  /// of a longer one (a deviation other than oadev at octaves, a temperature) is refused beyond. Changes no result.
+  /// Samples kept at a time at most, but for a leaf of one channel: a log of many channels is read
+  /// several times, and what needs all samples of a longer one (a deviation other than oadev at
+  /// octaves, a temperature) is refused beyond. Changes no result.
   std::uint64_t memory_bytes = std::uint64_t{1} << 30U;
-  /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times a decade besides, for plots
+  /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times a decade
+  /// besides, for plots
   bool ten_a_decade = false;
   bool full_overlap =
       false;  ///< every term of the overlapping Allan deviation whatever the record's length
@@ -104,10 +108,9 @@ struct ChannelResult {
   Spectrum spectrum;                   ///< log-binned for plots and curves.csv, at most 400 bins
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
-  std::vector<NoiseType>
-      noise_types;        ///< by averaging time; of phase and frequency
-  DigitalFaults digital;  ///< rails, held values, a staircase
-  std::vector<std::string> problems;  ///< why something is absent, in sentences
+  std::vector<NoiseType> noise_types;  ///< by averaging time; of phase and frequency
+  DigitalFaults digital;               ///< rails, held values, a staircase
+  std::vector<std::string> problems;   ///< why something is absent, in sentences
   std::shared_ptr<const ChannelVerification>
       verification;  ///< when it was asked for (verification.hpp)
 };
@@ -124,9 +127,9 @@ struct Characterization {
   double seconds = 0;  ///< measured; kept apart from everything else in the outputs, NaN: left out
 };
 
-/// Reads the log once (several times where its channels together are more than `memory_bytes`) and computes what the report
-/// shows. Throws Error(input) about the log, Error(usage) about options that do not fit it; what the
-/// numbers of a channel do not allow is a sentence in its `problems`.
+/// Reads the log once (several times where its channels together are more than `memory_bytes`) and
+/// computes what the report shows. Throws Error(input) about the log, Error(usage) about options
+/// that do not fit it; what the numbers of a channel do not allow is a sentence in its `problems`.
 Characterization characterize(const std::string& path,
                               const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
@@ -141,11 +144,12 @@ Characterization characterize(const Recording& recording,
                               const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
 
-/// What of these options needs every sample of a log of more than a leaf ("the deviation mdev"); empty: nothing does.
+/// What of these options needs every sample of a log of more than a leaf ("the deviation mdev");
+/// empty: nothing does.
 std::string what_needs_all_samples(const CharacterizeOptions& options);
 
-/// Which channel `wanted` (a name that it has in the end, a place c0, c1…, a pattern) makes the temperature; none: no channel. Throws
-/// Error(usage) for a pattern that several match.
+/// Which channel `wanted` (a name that it has in the end, a place c0, c1…, a pattern) makes the
+/// temperature; none: no channel. Throws Error(usage) for a pattern that several match.
 std::optional<std::size_t> temperature_channel(const LogInfo& log, const std::string& wanted);
 
 }  // namespace libchar

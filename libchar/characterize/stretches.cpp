@@ -24,8 +24,8 @@
 namespace libchar {
 namespace {
 
-/// Channels that are taken in one pass over the rows of a stretch: more of them take 15 to 30 MB each, fewer take
-/// more passes.
+/// Channels that are taken in one pass over the rows of a stretch: more of them take 15 to 30 MB
+/// each, fewer take more passes.
 constexpr std::size_t kAtOnce = 3;
 
 /// The segment in samples.
@@ -91,7 +91,10 @@ void check_samples(const ChannelSums& sums,
 }
 
 /// The nodes of a state into the tree; they are of its range, and follow each other.
-void add_nodes(StateReader& from, const StretchHead& head, const LeafStage& stage, ChannelTree& tree) {
+void add_nodes(StateReader& from,
+               const StretchHead& head,
+               const LeafStage& stage,
+               ChannelTree& tree) {
   std::uint64_t next = head.range.first_leaf;
   for (std::size_t left = read_node_count(from); left > 0; --left) {
     ChannelNode node = read_node(from, stage);
@@ -159,10 +162,13 @@ void take_channels(const std::string& path,
   for (std::uint64_t leaf = state.head.range.first_leaf; leaf < state.head.range.end_leaf; ++leaf) {
     at(leaf);
     const std::uint64_t first = leaf * kLeafSamples;
-    keep_head(
-        read_rows(
-            path, options.reading, first, std::min(first + stages[0].rows(), samples), read, channels),
-        state.log);
+    keep_head(read_rows(path,
+                        options.reading,
+                        first,
+                        std::min(first + stages[0].rows(), samples),
+                        read,
+                        channels),
+              state.log);
     const bool last = leaf + 1 == leaves;
     tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t c) {
       trees[c].add({0,
@@ -279,8 +285,8 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
     else
       result.log.warnings.add(
           "no_finite_value", "channels without any finite value", "channel " + channel.name);
-    result.channels.push_back(finish_channel(
-        std::move(read), chosen, workspace, channel, result.log.time.rate_hz));
+    result.channels.push_back(
+        finish_channel(std::move(read), chosen, workspace, channel, result.log.time.rate_hz));
     give_back_free_memory();
   }
   if (with_values == 0)

@@ -32,7 +32,8 @@ SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
   return model;
 }
 
-// The recording's steps, warm-up, ramp and temperature on top of simulated noise: the measured curve has them.
+// The recording's steps, warm-up, ramp and temperature on top of simulated noise: the measured
+// curve has them.
 class MeansAdded {
  public:
   MeansAdded(const NoiseFit& fit, const ArraySimulation& simulation) {
@@ -79,7 +80,8 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
   return stage.finish(recorded.channel, log.time.rate_hz);
 }
 
-// The model is the truth of the simulation; but how much of a measured shape's beginning is the term's own is as uncertain as the term.
+// The model is the truth of the simulation; but how much of a measured shape's beginning is the
+// term's own is as uncertain as the term.
 TermVerification compare_term(Term term,
                               const Coefficient& model,
                               const Coefficient& simulated,
@@ -164,8 +166,9 @@ bool has_process(const NoiseFit& fit) {
   return fit.gauss_markov && fit.gauss_markov->in_model;
 }
 
-// Of a Gauss-Markov process: empty when model and simulation agree. Where the simulated record does without it (or asks for one that
-// the model has not), its flicker and walk stand for the same slow noise, and the curves alone compare it.
+// Of a Gauss-Markov process: empty when model and simulation agree. Where the simulated record does
+// without it (or asks for one that the model has not), its flicker and walk stand for the same slow
+// noise, and the curves alone compare it.
 std::string process_disagreement(const NoiseFit& model,
                                  const NoiseFit& simulated,
                                  const VerifyOptions& how) {
@@ -274,11 +277,11 @@ bool verify(Characterization& recorded,
     tbb::parallel_for(first, last, [&](std::size_t c) {
       ChannelResult& channel = channels[c];
       if (!channel.fit) return;
-      channel.verification = std::make_shared<ChannelVerification>(compared(
-          channel,
-          simulated_channel(
-              channel, recorded.log, options, workspace, how, c, recorded.temperature),
-          how));
+      channel.verification = std::make_shared<ChannelVerification>(
+          compared(channel,
+                   simulated_channel(
+                       channel, recorded.log, options, workspace, how, c, recorded.temperature),
+                   how));
     });
   }
   return std::all_of(channels.begin(), channels.end(), [](const ChannelResult& channel) {

@@ -1,10 +1,13 @@
-// Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it. A rail has eight samples and twice
-// as many as the neighbourhood (a thousandth of the range, or one and a half times the distance to the next value).
-// Held values: runs of one value. Polled at r times the sensor's rate, runs are floor(r) or ceil(r) long; repeats of coarsely rounded
-// noise come by chance, runs of one among them. Where r < 2, single values are there as well, and the repeats come evenly.
-// Staircase: with s = sqrt(2) sigma / step, neighbours are equal with probability
+// Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it.
+// A rail has eight samples and twice as many as the neighbourhood (a thousandth of the range, or
+// one and a half times the distance to the next value). Held values: runs of one value. Polled at r
+// times the sensor's rate, runs are floor(r) or ceil(r) long; repeats of coarsely rounded noise
+// come by chance, runs of one among them. Where r < 2, single values are there as well, and the
+// repeats come evenly. Staircase: with s = sqrt(2) sigma / step, neighbours are equal with
+// probability
 //   P0 = 2 Phi(1/s) - 1 - s sqrt(2/pi) (1 - exp(-1/(2 s^2))),   .27 at sigma = step,
-// averaged over where between two steps the value stands, which holds while the noise moves it there (sigma > .3 step).
+// averaged over where between two steps the value stands, which holds while the noise moves it
+// there (sigma > .3 step).
 #include "libchar/fit/digital.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +35,7 @@ DigitalSums::AtRail rail_of(std::span<const double> record,
                             double present) {
   const double at = high ? census.high : census.low, range = census.high - census.low;
   const auto count = static_cast<double>(high ? census.at_high : census.at_low);
-  if (count < static_cast<double>(kFewestAtRail) || count > kMostAtRail * present)
-    return {at, 0};
+  if (count < static_cast<double>(kFewestAtRail) || count > kMostAtRail * present) return {at, 0};
   const auto inwards = [&](double x) { return high ? at - x : x - at; };
   double next = range;
   for (const double x : record)
@@ -232,7 +234,8 @@ DigitalFaults find_digital_faults(std::span<const double> record,
                                   std::optional<double> step,
                                   std::string_view unit) {
   const ValueCensus census = value_census(record);
-  return find_digital_faults(digital_sums(record, census, count_missing(record)), census, rate_hz, step, unit);
+  return find_digital_faults(
+      digital_sums(record, census, count_missing(record)), census, rate_hz, step, unit);
 }
 
 DigitalFaults find_digital_faults(const DigitalSums& sums,
@@ -258,7 +261,8 @@ DigitalFaults find_digital_faults(const DigitalSums& sums,
 }
 
 void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
-  // A rail that less than one sample in a hundred reaches takes less than a hundredth of the standard deviation.
+  // A rail that less than one sample in a hundred reaches takes less than a hundredth of the
+  // standard deviation.
   constexpr double kHarmless = 0.01;
   double clipped = 0;
   for (const Rail& rail : faults.rails) clipped += rail.share;

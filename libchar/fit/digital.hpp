@@ -1,5 +1,6 @@
 #pragma once
-// What the converter and the link did to the samples: rails, repeated values, steps of the converter above the noise.
+// What the converter and the link did to the samples: rails, repeated values, steps of the
+// converter above the noise.
 
 #include <cstdint>
 #include <optional>
@@ -48,14 +49,16 @@ struct ValueCensus {
 
 ValueCensus value_census(std::span<const double> record);
 
-/// Lengths of the runs of one value, but for the first and the last: how often which, and how far apart the repeats are.
+/// Lengths of the runs of one value, but for the first and the last: how often which, and how far
+/// apart the repeats are.
 struct ValueRuns {
   std::vector<double> of_length;  ///< [length], up to 1024; empty: nothing was counted
   double runs = 0, samples = 0;
   double repeats = 0, spacing = 0, spacing2 = 0;
 };
 
-/// What is looked at of the samples of a leaf, or of several: their runs, where values repeat at all, and rails.
+/// What is looked at of the samples of a leaf, or of several: their runs, where values repeat at
+/// all, and rails.
 struct DigitalSums {
   struct AtRail {
     double value = 0;
@@ -75,8 +78,9 @@ void join(DigitalSums& sums, const DigitalSums& later);
 void write_state(const DigitalSums& sums, StateWriter& to);
 DigitalSums read_digital_sums(StateReader& from);
 
-/// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`). `census` of the record.
-/// No finding in a record of noise that is sampled and rounded finely, whatever its length.
+/// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`).
+/// `census` of the record. No finding in a record of noise that is sampled and rounded finely,
+/// whatever its length.
 DigitalFaults find_digital_faults(const DigitalSums& sums,
                                   const ValueCensus& census,
                                   double rate_hz,
@@ -89,8 +93,8 @@ DigitalFaults find_digital_faults(std::span<const double> record,
                                   std::optional<double> step = {},
                                   std::string_view unit = {});
 
-/// Coefficients of a record that shows the converter's rounding (a staircase) or its rails instead of the noise are a misfit: their
-/// intervals reach to what the noise may be.
+/// Coefficients of a record that shows the converter's rounding (a staircase) or its rails instead
+/// of the noise are a misfit: their intervals reach to what the noise may be.
 void doubt_digital(const DigitalFaults& faults, NoiseFit& fit);
 
 }  // namespace libchar

@@ -35,8 +35,7 @@ double event_mean(std::span<const Event> events, double rate_hz, double first, d
     const double at = std::round(event.at_s * rate_hz);
     if (event.kind == EventKind::step)
       sum += event.size * std::clamp((first + count - at) / count, 0.0, 1.0);
-    if (event.kind == EventKind::ramp)
-      sum += event.slope / rate_hz * (first + 0.5 * (count - 1));
+    if (event.kind == EventKind::ramp) sum += event.slope / rate_hz * (first + 0.5 * (count - 1));
     if (event.kind == EventKind::warm_up) {
       // of the decay e^(-t/tau): q^k for k = 0 … count - 1, q = e^(-1/tau)
       const double tau = event.tau_s * rate_hz;

@@ -1,5 +1,6 @@
 #pragma once
-// What a noise spectrum cannot hold: a step, a warm-up, a straight drift. Each is a mean with a sign (docs/theory/events.md).
+// What a noise spectrum cannot hold: a step, a warm-up, a straight drift. Each is a mean with a
+// sign (docs/theory/events.md).
 
 #include <span>
 #include <string>
@@ -35,7 +36,8 @@ struct Event {
 /// Takes the events out of a record at its full rate (its mean is not kept).
 void subtract_events(std::span<const Event> events, double rate_hz, std::span<double> record);
 
-/// Mean of the events over `count` samples from `first` on, both of them in samples of the record and not necessarily whole.
+/// Mean of the events over `count` samples from `first` on, both of them in samples of the record
+/// and not necessarily whole.
 double event_mean(std::span<const Event> events, double rate_hz, double first, double count);
 
 /// "A step of 0.125 ± 0.004 deg/s at 740 s (between 739.8 and 740.3 s)."

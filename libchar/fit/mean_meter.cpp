@@ -1,4 +1,5 @@
-// Two means become that of both by their weights, m1 + (m2 - m1) n2 / (n1 + n2): an offset costs no digits.
+// Two means become that of both by their weights, m1 + (m2 - m1) n2 / (n1 + n2): an offset costs no
+// digits.
 #include "libchar/fit/mean_meter.hpp"
 
 #include <algorithm>
@@ -18,7 +19,8 @@ constexpr std::size_t kMostKept = std::size_t{1} << 16U;
 void MeanMeter::Mean::join(const Mean& later) {
   if (later.present == 0) return;
   present += later.present;
-  value += (later.value - value) * static_cast<double>(later.present) / static_cast<double>(present);
+  value +=
+      (later.value - value) * static_cast<double>(later.present) / static_cast<double>(present);
 }
 
 void MeanMeter::push(std::span<const double> samples) {
@@ -93,8 +95,7 @@ std::uint64_t MeanMeter::missing() const {
 }
 
 EventSeries MeanMeter::series(double rate_hz) const {
-  EventSeries series =
-      event_series(means(), rate_hz / static_cast<double>(per_mean_), kMostKept);
+  EventSeries series = event_series(means(), rate_hz / static_cast<double>(per_mean_), kMostKept);
   series.per_point *= per_mean_;
   return series;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// A record of any length as means on its own clock, in constant memory: what events, motion and slow changes are looked for in.
+// A record of any length as means on its own clock, in constant memory: what events, motion and
+// slow changes are looked for in.
 
 #include <cstdint>
 #include <span>
@@ -17,7 +18,8 @@ class MeanMeter {
   /// `per_mean`: samples in a mean at first, a power of two.
   explicit MeanMeter(std::uint64_t per_mean) : per_mean_(per_mean) {}
   void push(std::span<const double> samples);
-  /// The samples that `later` has seen follow directly. What is here must be a whole number of its means.
+  /// The samples that `later` has seen follow directly. What is here must be a whole number of its
+  /// means.
   void join(MeanMeter later);
   /// Of the record times a factor.
   void scale(double factor);

@@ -44,7 +44,8 @@ constexpr std::size_t kLowest = 5;   ///< coefficients that a warm-up or a drift
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kRamp = static_cast<std::size_t>(Term::ramp);
 
-/// The bins, which of them are fitted, what is offered, and the fit; remedies change the last three.
+/// The bins, which of them are fitted, what is offered, and the fit; remedies change the last
+/// three.
 struct Attempt {
   const std::vector<PowerBin>* bins = nullptr;
   Band band;
@@ -199,7 +200,8 @@ void answer_low_frequencies(Attempt& now) {
       "was left out of the fit.");
 }
 
-/// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what was measured.
+/// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what
+/// was measured.
 double largest_possible(Term term, const AllanCurve& allan) {
   double largest = std::numeric_limits<double>::infinity();
   for (const AllanPoint& point : allan.points) {
@@ -211,8 +213,8 @@ double largest_possible(Term term, const AllanCurve& allan) {
   return largest;
 }
 
-/// Where the terms do not describe the record its scatter is larger than theirs: intervals by as much, and limits not below what the
-/// measured curve leaves room for.
+/// Where the terms do not describe the record its scatter is larger than theirs: intervals by as
+/// much, and limits not below what the measured curve leaves room for.
 void admit_misfit(NoiseFit& fit, const AllanCurve* allan) {
   AllanCurve curve = allan != nullptr ? *allan : AllanCurve{};
   if (deviation_row(curve.type).is_allan())
@@ -231,8 +233,8 @@ void admit_misfit(NoiseFit& fit, const AllanCurve* allan) {
   }
 }
 
-/// A cut band says of white noise what its slow part shows; a limit below the whole spectrum above it would be a statement about
-/// frequencies that were not looked at.
+/// A cut band says of white noise what its slow part shows; a limit below the whole spectrum above
+/// it would be a statement about frequencies that were not looked at.
 void raise_white_limit(NoiseFit& fit) {
   constexpr double kFewestDof = 30;
   Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
@@ -262,7 +264,8 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
       brief_text(worst->frequency_hz)));
 }
 
-/// After the decisions: the process that was needed gets its intervals, one that is as likely a sentence.
+/// After the decisions: the process that was needed gets its intervals, one that is as likely a
+/// sentence.
 void answer_process(const std::vector<PowerBin>& bins,
                     const Band& band,
                     GaussMarkovChoice& process,
@@ -272,7 +275,8 @@ void answer_process(const std::vector<PowerBin>& bins,
   settle_gauss_markov(bins, process, fit);
 }
 
-/// What was fitted in the ramp's column is flicker phase noise; bounds are what the fit's covariance says.
+/// What was fitted in the ramp's column is flicker phase noise; bounds are what the fit's
+/// covariance says.
 void settle_flicker_phase(NoiseFit& fit) {
   for (Coefficient& term : fit.term)
     if (term.value) term.bound = term.relative_sd;

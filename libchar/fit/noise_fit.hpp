@@ -18,12 +18,13 @@ namespace libchar {
 
 struct FitWorkspace;  // allan_fit.hpp
 
-/// Widens intervals, limits and covariance by a factor >= 1 and calls what has a value a misfit: the coefficients scatter more than the
-/// likelihood says.
+/// Widens intervals, limits and covariance by a factor >= 1 and calls what has a value a misfit:
+/// the coefficients scatter more than the likelihood says.
 void widen_as_misfit(double wider, NoiseFit& fit);
 
-/// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` is what the second opinion is made of (may be null).
-/// Throws Error(numeric) when there are fewer bins than terms.
+/// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` is
+/// what the second opinion is made of (may be null). Throws Error(numeric) when there are fewer
+/// bins than terms.
 NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         double rate_hz,
                         std::uint64_t samples,
@@ -31,8 +32,8 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         const FitOptions& options = {},
                         FitWorkspace* workspace = nullptr);
 
-/// The same on the powers of a record, spectral lines clipped when remedies are on, and temperature has taken degrees of freedom.
-/// `samples` without the missing ones.
+/// The same on the powers of a record, spectral lines clipped when remedies are on, and temperature
+/// has taken degrees of freedom. `samples` without the missing ones.
 NoiseFit fit_powers(std::span<const PooledPower> powers,
                     double rate_hz,
                     std::uint64_t samples,
@@ -49,8 +50,8 @@ struct RecordKnowledge {
   std::optional<std::uint64_t> missing;  ///< samples, counted already
 };
 
-/// Alarms, remedies, bins, fit, second opinion, of samples in memory. A record of more than a leaf (2^20 samples) is fitted by its sums,
-/// unless a temperature is given.
+/// Alarms, remedies, bins, fit, second opinion, of samples in memory. A record of more than a leaf
+/// (2^20 samples) is fitted by its sums, unless a temperature is given.
 NoiseFit fit_record(std::span<const double> record,
                     double rate_hz,
                     const AllanCurve* allan,

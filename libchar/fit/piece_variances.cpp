@@ -1,5 +1,6 @@
-// A leaf is a binary tree of pieces of 2^14 samples, whose Allan sums are joined upwards: each node gives the octaves that fit it sixteen
-// times and its halves do not. As a record grows, the shortest pieces become pairs, whose variance is the mean of both.
+// A leaf is a binary tree of pieces of 2^14 samples, whose Allan sums are joined upwards: each node
+// gives the octaves that fit it sixteen times and its halves do not. As a record grows, the
+// shortest pieces become pairs, whose variance is the mean of both.
 #include "libchar/fit/piece_variances.hpp"
 
 #include <algorithm>
@@ -88,8 +89,7 @@ void join(PieceVariances& pieces, const PieceVariances& later_as_it_is) {
   PieceVariances later = later_as_it_is;
   while (pieces.shortest < later.shortest) double_shortest(pieces);
   while (later.shortest < pieces.shortest) double_shortest(later);
-  if (pieces.variance.size() < later.variance.size())
-    pieces.variance.resize(later.variance.size());
+  if (pieces.variance.size() < later.variance.size()) pieces.variance.resize(later.variance.size());
   for (std::size_t j = 0; j < later.variance.size(); ++j)
     pieces.variance[j].insert(
         pieces.variance[j].end(), later.variance[j].begin(), later.variance[j].end());

@@ -1,5 +1,6 @@
 #pragma once
-// The Allan variance of the pieces of a record at every octave that fits a piece sixteen times: is it the same throughout?
+// The Allan variance of the pieces of a record at every octave that fits a piece sixteen times: is
+// it the same throughout?
 
 #include <cstdint>
 #include <span>
@@ -13,11 +14,12 @@ namespace libchar {
 /// Averaging times in a piece, at least.
 inline constexpr std::uint64_t kWindowsOfPiece = 16;
 
-/// At octave j (m = 2^j) of consecutive pieces of `length(j)` samples, from the record's first on. What fills no piece is in none.
+/// At octave j (m = 2^j) of consecutive pieces of `length(j)` samples, from the record's first on.
+/// What fills no piece is in none.
 struct PieceVariances {
   static constexpr std::uint64_t kShortest = std::uint64_t{1} << 14U;
 
-  std::uint64_t shortest = kShortest;          ///< piece; a power of two
+  std::uint64_t shortest = kShortest;         ///< piece; a power of two
   std::vector<std::vector<double>> variance;  ///< [j][piece]; NaN: none, of missing samples
 
   std::uint64_t length(std::size_t octave) const;

@@ -10,7 +10,8 @@
 
 namespace libchar {
 
-/// A bin of mean squared DCT-II coefficients and its expectation per unit theta: all the likelihood needs.
+/// A bin of mean squared DCT-II coefficients and its expectation per unit theta: all the likelihood
+/// needs.
 struct PowerBin {
   double frequency_hz = 0;  ///< centre
   double energy = 0;        ///< mean of c_k² (per-sample variance scale: white noise gives Q² fs)
@@ -28,7 +29,8 @@ struct PooledPower {
   std::uint64_t first = 1;
   std::uint64_t pooled = 1;
   std::vector<double> mean;
-  /// of `mean`, what events put there: taken out of the bins, whose degrees of freedom become fewer; empty: nothing
+  /// of `mean`, what events put there: taken out of the bins, whose degrees of freedom become
+  /// fewer; empty: nothing
   std::vector<double> of_events = {};
 };
 
@@ -39,8 +41,9 @@ struct ClippedBins {
   std::uint64_t clipped = 0;  ///< coefficients left out
 };
 
-/// Of a record one exact transform, k >= 1. Missing samples: short ones are closed up (concatenated), at a long gap a new record starts and
-/// likelihoods add. A record in leaves: powers_of (power_sums.hpp).
+/// Of a record one exact transform, k >= 1. Missing samples: short ones are closed up
+/// (concatenated), at a long gap a new record starts and likelihoods add. A record in leaves:
+/// powers_of (power_sums.hpp).
 std::vector<PooledPower> whole_powers(std::span<const double> record);
 
 std::vector<PowerBin> power_bins(std::span<const PooledPower> powers, double rate_hz);

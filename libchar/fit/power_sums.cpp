@@ -1,28 +1,33 @@
 // Squared DCT-II coefficients of a record of any length, in two levels:
 //   above f_split = 15.5/(2 block dt):  transforms of blocks of 2^15 samples, pooled, k >= 16, and of the tail
 //   below f_split:                      the transform of the series of means of block/64 = 512 samples over a whole segment
-// Both use their exact expectations (dct_means). Sixteen coefficients of every block are left to the second level, so that neighbouring
-// blocks stay uncorrelated under flicker and walk and the slow noise is seen with the full resolution of the segment; white noise is
-// exactly uncorrelated within each level.
+// Both use their exact expectations (dct_means). Sixteen coefficients of every block are left to
+// the second level, so that neighbouring blocks stay uncorrelated under flicker and walk and the
+// slow noise is seen with the full resolution of the segment; white noise is exactly uncorrelated
+// within each level.
 //
-// A record comes in parts: the powers of blocks are added, and the series of means is put together from those of the parts, each less its
-// own first sample x_0, once at the end:
+// A record comes in parts: the powers of blocks are added, and the series of means is put together
+// from those of the parts, each less its own first sample x_0, once at the end:
 //
 //   sqrt(p) (mean_i - x_0) = sqrt(p) (mean_i - x_0part) + sqrt(p) (x_0part - x_0).
 //
-// A part of a clean record is a multiple of a block long. Where samples are missing the rest of it that fills no block is cut into
-// pieces of 16384, 8192, 4096 and 2048 samples, whose transforms are pooled by their length; the rest of those (at most 2047 samples
-// a part) and of a mean are left out. So is the rest in front of a gap of more than 4096 samples. Whether such a gap ends a segment
-// is decided at the end, when it is known how many samples are in front of it: a record begins anew where it is longer than one in
-// hundred of them. Memory: 64 means a block, and a block of each length.
+// A part of a clean record is a multiple of a block long. Where samples are missing the rest of it
+// that fills no block is cut into pieces of 16384, 8192, 4096 and 2048 samples, whose transforms
+// are pooled by their length; the rest of those (at most 2047 samples a part) and of a mean are
+// left out. So is the rest in front of a gap of more than 4096 samples. Whether such a gap ends a
+// segment is decided at the end, when it is known how many samples are in front of it: a record
+// begins anew where it is longer than one in hundred of them. Memory: 64 means a block, and a block
+// of each length.
 //
-// Parts of 2^29 samples are settled: their means become powers of blocks of 2^15 means, as those of mean_series.hpp, and one value for
-// 2^18 samples. Where samples are missing the rest is cut into pieces of 2^14 … 2^6 means, and a gap is measured against all that is in
-// front of the part, present or missing.
+// Parts of 2^29 samples are settled: their means become powers of blocks of 2^15 means, as those of
+// mean_series.hpp, and one value for 2^18 samples. Where samples are missing the rest is cut into
+// pieces of 2^14 … 2^6 means, and a gap is measured against all that is in front of the part,
+// present or missing.
 //
-// Events (steps, a warm-up, a ramp) are e_t with e known: the series of means loses its mean e, and the pooled powers of blocks lose
-// sum e_k² of the transforms of e over the places of the blocks, with a cross term 2 n_k e_k left that has no mean (pooled_power.cpp).
-// Where samples are missing, places are those of a record whose missing ones are spread evenly over the run.
+// Events (steps, a warm-up, a ramp) are e_t with e known: the series of means loses its mean e, and
+// the pooled powers of blocks lose sum e_k² of the transforms of e over the places of the blocks,
+// with a cross term 2 n_k e_k left that has no mean (pooled_power.cpp). Where samples are missing,
+// places are those of a record whose missing ones are spread evenly over the run.
 #include "libchar/fit/power_sums.hpp"
 
 #include <algorithm>
@@ -74,7 +79,8 @@ struct Segment {
   }
 
  private:
-  /// sqrt(p) (mean of p samples less `run.shift`), about the segment's shift and without the events.
+  /// sqrt(p) (mean of p samples less `run.shift`), about the segment's shift and without the
+  /// events.
   void add_series(std::span<const double> values,
                   std::uint64_t p,
                   const PowerRun& run,
@@ -102,13 +108,10 @@ void append_means(Segment segment, bool alone, std::vector<PooledPower>& out) {
       means, kSamplesAMean, 1, end_of_left(means.size(), kSamplesAMean, PowerPart::kBlock)));
 }
 
-/// Per transform, the energy of events over `count` blocks that follow each other: of `length` means of `p` samples, whose places are
-/// `stretch` times as far apart as what is present.
-std::vector<double> energy_of(const Shape& shape,
-                              std::uint64_t count,
-                              std::uint64_t length,
-                              double p,
-                              double stretch) {
+/// Per transform, the energy of events over `count` blocks that follow each other: of `length`
+/// means of `p` samples, whose places are `stretch` times as far apart as what is present.
+std::vector<double> energy_of(
+    const Shape& shape, std::uint64_t count, std::uint64_t length, double p, double stretch) {
   std::vector<double> energy(length, 0.0), values(length);
   Dct plan(length);
   const double block = static_cast<double>(length) * p * stretch;
@@ -125,7 +128,8 @@ std::vector<double> energy_of(const Shape& shape,
     const double first = static_cast<double>(b) * block;
     if (!drifts && !steps_in(first)) continue;
     for (std::size_t t = 0; t < length; ++t)
-      values[t] = std::sqrt(p) * shape.mean(first + static_cast<double>(t) * p * stretch, p * stretch);
+      values[t] =
+          std::sqrt(p) * shape.mean(first + static_cast<double>(t) * p * stretch, p * stretch);
     const std::span<const double> c = plan.transform(values);
     for (std::size_t k = 0; k < length; ++k) energy[k] += c[k] * c[k];
   }
@@ -144,8 +148,7 @@ void add_energy(const Shape& shape, double p, double stretch, PooledPower& power
 PowerRun settled(const Segment& segment, std::uint64_t gap, MeanCutter& cutter, MeanPowers& to) {
   const std::span<const double> means = segment.means;
   cutter.take_pieces(means.subspan(cutter.take_blocks(means, to)), to);
-  return {
-      gap, segment.samples, segment.shift, {}, slow_means(means), segment.at, segment.rows};
+  return {gap, segment.samples, segment.shift, {}, slow_means(means), segment.at, segment.rows};
 }
 
 }  // namespace
@@ -188,8 +191,9 @@ void PowerPart::State::push(std::span<const double> values) {
   }
 }
 
-/// What a present sample after missing ones, or the first of all, begins. The gap in front of the first run is told even when it is
-/// short: with the one at the end of the part before it may be long.
+/// What a present sample after missing ones, or the first of all, begins. The gap in front of the
+/// first run is told even when it is short: with the one at the end of the part before it may be
+/// long.
 void PowerPart::State::begin_run(double first) {
   if (gap > kLongGap && run.samples > 0) end_run();
   if (run.samples == 0) {
@@ -328,9 +332,7 @@ void scale(PowerSums& sums, double factor) {
   times(sums.tail, factor);
 }
 
-std::vector<PooledPower> powers_of(PowerSums sums,
-                                   std::span<const Event> events,
-                                   double rate_hz) {
+std::vector<PooledPower> powers_of(PowerSums sums, std::span<const Event> events, double rate_hz) {
   const Shape shape{events, rate_hz};
   std::vector<PooledPower> powers;
   std::uint64_t samples = 0;

@@ -1,5 +1,6 @@
-// A record becomes bins and a fit: as one exact transform where it fits into a leaf, by the sums over its leaves where it does not.
-// Which of both depends on its length only, so that whoever has the samples, and however many at a time, finds the same bits.
+// A record becomes bins and a fit: as one exact transform where it fits into a leaf, by the sums
+// over its leaves where it does not. Which of both depends on its length only, so that whoever has
+// the samples, and however many at a time, finds the same bits.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -36,16 +37,15 @@ double event_variance(std::span<const Event> events, double rate_hz, double samp
   return sum;
 }
 
-/// The octaves of a record without its events: the long ones from its means, of the short ones what is hardly theirs.
+/// The octaves of a record without its events: the long ones from its means, of the short ones what
+/// is hardly theirs.
 AllanCurve curve_without(const FittedSums& sums, std::span<const Event> events, double rate_hz) {
   AllanCurve curve = octave_curve(sums.allan, 1 / rate_hz);
   const std::uint64_t per_mean = sums.means.per_mean(), from = kMeansOfPoint * per_mean;
   std::erase_if(curve.points, [&](AllanPoint& point) {
     const double variance = point.deviation * point.deviation;
-    const double of_events = event_variance(events,
-                                            rate_hz,
-                                            static_cast<double>(curve.samples),
-                                            static_cast<double>(point.m));
+    const double of_events = event_variance(
+        events, rate_hz, static_cast<double>(curve.samples), static_cast<double>(point.m));
     if (point.m >= from || of_events > kMostOfEvents * variance) return true;
     point.deviation = std::sqrt(variance - of_events);
     return false;
@@ -110,11 +110,10 @@ NoiseFit fit_whole(std::span<const double> record,
   const bool complete = despiked.samples.empty() ? missing == 0 : present_run(data) == data.size();
   if (options.remedies && !complete) filled = bridged(data);
   const std::span<const double> present = filled.empty() ? data : std::span<const double>(filled);
-  const std::vector<PooledPower> powers =
-      present.size() > kLeafSamples ? powers_of(record_sums(present, false).plain.bins)
-                                    : whole_powers(present);
-  NoiseFit fit =
-      fit_powers(powers, rate_hz, samples, allan, options, workspace, means.temperature);
+  const std::vector<PooledPower> powers = present.size() > kLeafSamples
+                                              ? powers_of(record_sums(present, false).plain.bins)
+                                              : whole_powers(present);
+  NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace, means.temperature);
   if (!options.clock) {
     const bool counted = options.difference_kurtosis && as_recorded;
     widen_for_tails(
@@ -151,7 +150,8 @@ NoiseFit fit_sums(RecordSums sums,
   }
   const std::vector<PooledPower> powers = powers_of(std::move(used.bins), events, rate_hz);
   NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace);
-  // Spikes and steps are in the kurtosis of the differences; what it would be without them is not known.
+  // Spikes and steps are in the kurtosis of the differences; what it would be without them is not
+  // known.
   if (!options.clock && options.difference_kurtosis && !cleaned && !has_step(events))
     widen_for_tails(*options.difference_kurtosis, samples, fit);
   report_means(means, options, fit);
@@ -173,8 +173,7 @@ NoiseFit fit_record(std::span<const double> record,
     return fit_whole(record, rate_hz, allan, options, workspace, known);
   FitOptions chosen = options;
   if (!chosen.difference_kurtosis) chosen.difference_kurtosis = kurtosis_of_differences(record);
-  return fit_sums(
-      record_sums(record, options.remedies), rate_hz, allan, chosen, workspace);
+  return fit_sums(record_sums(record, options.remedies), rate_hz, allan, chosen, workspace);
 }
 
 }  // namespace libchar

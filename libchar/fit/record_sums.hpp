@@ -1,5 +1,6 @@
 #pragma once
-// All that a fit needs of a record of any length: sums over its leaves (core/leaf_tree.hpp), which join.
+// All that a fit needs of a record of any length: sums over its leaves (core/leaf_tree.hpp), which
+// join.
 
 #include <cstdint>
 #include <optional>
@@ -35,8 +36,8 @@ struct LeafKind {
   bool bridged = true;  ///< short runs of missing samples are filled for the transforms
   bool whole = false;   ///< none is missing
 };
-/// `shared`: has seen the blocks of the leaf, which is whole, already. Else `blocks` transforms them: so they have the same
-/// bits whether a spectrum shares them or not.
+/// `shared`: has seen the blocks of the leaf, which is whole, already. Else `blocks` transforms
+/// them: so they have the same bits whether a spectrum shares them or not.
 FittedSums fitted_sums(std::span<const double> leaf,
                        const LeafKind& kind,
                        const WelchParts& blocks,
@@ -46,7 +47,8 @@ WelchParts block_transforms(WelchWorkspace* workspace = nullptr);
 
 /// Adds the part that follows directly.
 void join(RecordSums& sums, RecordSums later);
-/// Of a node of the tree, what grows with the record is made less where the node is as long as that asks for.
+/// Of a node of the tree, what grows with the record is made less where the node is as long as that
+/// asks for.
 void settle(RecordSums& sums, std::uint64_t height, std::uint64_t first_leaf);
 
 /// Of the record times a factor.

@@ -1,13 +1,14 @@
-// A record of 128 pieces, eight in each of sixteen stretches; v the Allan variance of a piece at an octave that fits it sixteen times,
+// A record of 128 pieces, eight in each of sixteen stretches; v the Allan variance of a piece at an
+// octave that fits it sixteen times,
 //   F = 8 var(mean of ln v of a stretch) / mean of (var of ln v within a stretch),   F(15, 112) where nothing changes slowly:
-// analysis of variance, whose own scatter within a stretch serves heavy tails and whatever else chance does quickly.
-// Longer averaging times, of whole stretches: Bartlett's test of equal variances (Proc. R. Soc. A 160, 1937) with the degrees of freedom
-// f_i of each variance,
+// analysis of variance, whose own scatter within a stretch serves heavy tails and whatever else
+// chance does quickly. Longer averaging times, of whole stretches: Bartlett's test of equal
+// variances (Proc. R. Soc. A 160, 1937) with the degrees of freedom f_i of each variance,
 //   T = f ln(sum f_i v_i / f) - sum f_i ln v_i,   T / (1 + (sum 1/f_i - 1/f) / 45)  chi-square of 15,   f = sum f_i,
-// divided by how much more than in Gaussian noise ln v scatters at the longest octave of the pieces (where that
-// is half as much again, nothing is said of longer ones).
-// Averaging times that are too long for sixteen stretches: of four, which hold them eight times.
-// At a hundredth over the number of octaves, one in a hundred steady records is called unsteady, or fewer.
+// divided by how much more than in Gaussian noise ln v scatters at the longest octave of the pieces
+// (where that is half as much again, nothing is said of longer ones). Averaging times that are too
+// long for sixteen stretches: of four, which hold them eight times. At a hundredth over the number
+// of octaves, one in a hundred steady records is called unsteady, or fewer.
 #include "libchar/fit/stationarity.hpp"
 
 #include <fmt/format.h>
@@ -167,7 +168,8 @@ void add_dof(std::vector<AllanCurve>& curves, const NoiseFit& fit) {
   }
 }
 
-/// Curves of the stretches from a record's means of r samples, at the averaging factors of the record.
+/// Curves of the stretches from a record's means of r samples, at the averaging factors of the
+/// record.
 Curves coarse_curves(std::span<const double> means,
                      std::size_t stretches,
                      std::uint64_t r,
@@ -184,7 +186,8 @@ Curves coarse_curves(std::span<const double> means,
   return curves;
 }
 
-/// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy tails.
+/// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy
+/// tails.
 double excess_scatter(const Tested& record, double within, std::uint64_t m, const NoiseFit& fit) {
   // Degrees of freedom are those of any record as long as a piece.
   AllanCurve curve = pyramid_deviation(std::vector<double>(record.piece), record.dt_s);

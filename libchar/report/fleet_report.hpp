@@ -20,15 +20,17 @@ struct FleetReport {
   const FleetLot* lot = nullptr;
   std::string name;                  ///< of the fleet, in words
   std::vector<std::string> command;  ///< as typed
-  /// That the records were made of, one each, where they are still in memory: their Allan curves are drawn, their logs and settings named.
+  /// That the records were made of, one each, where they are still in memory: their Allan curves
+  /// are drawn, their logs and settings named.
   std::span<const Characterization> recordings;
 };
 
 /// index.html, coefficients.csv, coefficients.npz and lot.json.
 std::vector<std::string> fleet_report_files(const std::filesystem::path& folder);
 
-/// Writes them, all or none; their paths. A hundred thousand devices of six channels
-/// are half a gigabyte, nearly all of it the tables, which go to the disk piece by piece. Throws Error(output) as write_outputs does.
+/// Writes them, all or none; their paths. A hundred thousand devices of six channels are half a
+/// gigabyte, nearly all of it the tables, which go to the disk piece by piece. Throws Error(output)
+/// as write_outputs does.
 std::vector<std::string> write_fleet_report(const FleetReport& report,
                                             const std::filesystem::path& folder,
                                             bool force);

@@ -181,8 +181,7 @@ int main(int argc, char** argv) {
   const int records = argc > 1 ? std::atoi(argv[1]) : 400;
   const std::string chosen = argc > 2 ? argv[2] : "all";
   const bool in_blocks = argc > 3 && std::string(argv[3]) == "blocks";
-  fmt::print(
-      "records {}; {}\n", records, in_blocks ? "blocks" : "whole record");
+  fmt::print("records {}; {}\n", records, in_blocks ? "blocks" : "whole record");
   fmt::print(
       "         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  "
       "cover all  "

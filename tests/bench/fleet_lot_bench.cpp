@@ -131,7 +131,8 @@ void batches(int lots) {
   print_rate("batches alike, p below .05", alarms, tests, "5 %");
 }
 
-/// Slopes of the bias over temperature: of each device, their mean and spread, and how the bias repeats beside them.
+/// Slopes of the bias over temperature: of each device, their mean and spread, and how the bias
+/// repeats beside them.
 void temperatures(const std::string& title,
                   std::size_t devices,
                   const test::MadeTemperatures& how,

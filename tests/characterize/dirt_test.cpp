@@ -37,7 +37,8 @@ const Remedy* spikes_of(const ChannelResult& channel) {
 }  // namespace
 
 TEST_CASE("spikes of a record of leaves are those of a record of one") {
-  std::vector<double> y = white_record(kLeafSamples, 2), longer = white_record(2 * kLeafSamples + 7, 2);
+  std::vector<double> y = white_record(kLeafSamples, 2),
+                      longer = white_record(2 * kLeafSamples + 7, 2);
   const auto spikes_in = [](std::vector<double>& record) {
     for (double& value : record) value += 100;
     for (std::size_t t = 77; t < record.size(); t += 501) record[t] += t % 2 == 0 ? 30 : -30;

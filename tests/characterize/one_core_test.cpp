@@ -1,4 +1,5 @@
-// One answer to "N, B, K of this log?": a file, samples in memory, any memory, any number of threads, stretches on many machines.
+// One answer to "N, B, K of this log?": a file, samples in memory, any memory, any number of
+// threads, stretches on many machines.
 
 #include <unistd.h>
 
@@ -22,7 +23,8 @@ namespace {
 using Rows = std::vector<double>;
 
 /// White noise and a walk, and what `spoil` does to them.
-Rows noise(std::size_t rows, const std::function<void(Rows&)>& spoil = [](Rows&) {}) {
+Rows noise(
+    std::size_t rows, const std::function<void(Rows&)>& spoil = [](Rows&) {}) {
   std::mt19937_64 generator(11);
   std::normal_distribution<double> normal;
   Rows y(rows);
@@ -167,7 +169,8 @@ TEST_CASE("one log has one answer, whoever has its samples and however many at a
   }
 }
 
-TEST_CASE("of a log of several leaves events, motion, spikes and changes are found as of a short one") {
+TEST_CASE(
+    "of a log of several leaves events, motion, spikes and changes are found as of a short one") {
   const std::size_t size = 2 * kLeafSamples + 54321;
   const auto fit_of = [&](const std::function<void(Rows&)>& spoil) {
     const Log log(noise(size, spoil));

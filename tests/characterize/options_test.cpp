@@ -1,4 +1,5 @@
-// Every option of the analysis, of a log of one leaf and of one of two: it changes the answer alike, or is refused with what would do.
+// Every option of the analysis, of a log of one leaf and of one of two: it changes the answer
+// alike, or is refused with what would do.
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/core/leaf_tree.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/leaf_tree.hpp"
 #include "tests/characterize/refusal.hpp"
 #include "tests/support/memory_log.hpp"
 #include "tests/support/noise.hpp"
@@ -78,8 +78,7 @@ TEST_CASE("temperature of a recording: refused where it is none or cannot be kep
   CHECK(test::refusal(constant, options).find("E0703 the temperature box is constant") == 0);
   options.memory_bytes = 1U << 16U;
   const Recording longer = warm_recording(10, kLeafSamples + 1);
-  CHECK(test::refusal(longer, options).find("E0701 a correction for temperature takes all") ==
-        0);
+  CHECK(test::refusal(longer, options).find("E0701 a correction for temperature takes all") == 0);
 }
 
 TEST_CASE("temperature of a log: read beside the channels that were chosen, and not shown") {

@@ -1,4 +1,5 @@
-// The series of means of a long record: blocks and slow means against the noise they are of, and in parts.
+// The series of means of a long record: blocks and slow means against the noise they are of, and in
+// parts.
 
 #include "libchar/fit/detail/mean_series.hpp"
 
@@ -18,8 +19,8 @@ constexpr std::uint64_t kPerMean = 512;
 constexpr double kRateHz = 1000;
 constexpr std::size_t kMostMeans = std::size_t{1} << 20U;  ///< of 2^29 samples
 
-/// sqrt(512) times means of 512 samples of white noise of deviation 1 and of a walk: of the walk the increments of the means' spacing, and
-/// what the mean over the spacing adds to them.
+/// sqrt(512) times means of 512 samples of white noise of deviation 1 and of a walk: of the walk
+/// the increments of the means' spacing, and what the mean over the spacing adds to them.
 std::vector<double> white_walk_means(std::size_t n, double walk_step, unsigned seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
@@ -27,7 +28,8 @@ std::vector<double> white_walk_means(std::size_t n, double walk_step, unsigned s
   double walk = 0;
   const double scale = std::sqrt(static_cast<double>(kPerMean));
   for (double& x : means) {
-    // End point and mean of a walk over a step: covariance (1, 1/2; 1/2, 1/3) of the step's variance.
+    // End point and mean of a walk over a step: covariance (1, 1/2; 1/2, 1/3) of the step's
+    // variance.
     const double a = normal(engine), b = normal(engine);
     const double step = walk_step * scale;
     x = normal(engine) + scale * (walk + step * (0.5 * a + b / std::sqrt(12.0)));
@@ -36,7 +38,8 @@ std::vector<double> white_walk_means(std::size_t n, double walk_step, unsigned s
   return means;
 }
 
-/// Sum of squares of the bins' relative distances from what they should be, in their standard deviations; the largest bins.
+/// Sum of squares of the bins' relative distances from what they should be, in their standard
+/// deviations; the largest bins.
 struct Distance {
   double chi2 = 0, bins = 0;
 };
@@ -95,7 +98,8 @@ TEST_CASE(
 }
 
 TEST_CASE("mean series: bins of a long one have the expectations of white noise and of a walk") {
-  // At level 0 the walk is stronger than the white noise below 1e-4 Hz, in the middle of the blocks' coefficients.
+  // At level 0 the walk is stronger than the white noise below 1e-4 Hz, in the middle of the
+  // blocks' coefficients.
   const double step = 2e-5;
   for (const unsigned seed : {3U, 4U, 5U}) {
     const std::vector<PowerBin> bins =
@@ -134,7 +138,13 @@ TEST_CASE(
     const std::size_t cut = part == 9 ? count / 3 : count;
     one.runs.push_back({0, cut * kPerMean, 0, {from, from + cut}, {}, 0, cut * kPerMean});
     if (cut < count)
-      one.runs.push_back({5000, (count - cut) * kPerMean, 0, {from + cut, from + count}, {}, 0, (count - cut) * kPerMean});
+      one.runs.push_back({5000,
+                          (count - cut) * kPerMean,
+                          0,
+                          {from + cut, from + count},
+                          {},
+                          0,
+                          (count - cut) * kPerMean});
     settle_means(one, part << 24U);
     REQUIRE(one.runs.size() == 1);
     part == 0 ? void(all = std::move(one)) : join(all, std::move(one));
@@ -151,8 +161,10 @@ TEST_CASE(
   const std::vector<double> means = white_walk_means(kMeansBlock, 0, 8);
   PowerSums sums;
   const std::size_t half = kMeansBlock / 2;
-  sums.runs.push_back({0, half * kPerMean, 0, {means.begin(), means.begin() + half}, {}, 0, half * kPerMean});
-  sums.runs.push_back({50000, half * kPerMean, 0, {means.begin() + half, means.end()}, {}, 0, half * kPerMean});
+  sums.runs.push_back(
+      {0, half * kPerMean, 0, {means.begin(), means.begin() + half}, {}, 0, half * kPerMean});
+  sums.runs.push_back(
+      {50000, half * kPerMean, 0, {means.begin() + half, means.end()}, {}, 0, half * kPerMean});
   PowerSums later = sums;
   settle_means(sums, 0);
   REQUIRE(sums.runs.size() == 2);

@@ -1,4 +1,5 @@
-// Parts of a record joined against the record as one part: bins of clean records, gaps, missing samples.
+// Parts of a record joined against the record as one part: bins of clean records, gaps, missing
+// samples.
 
 #include "libchar/fit/power_sums.hpp"
 

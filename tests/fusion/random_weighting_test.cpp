@@ -31,7 +31,8 @@ TEST_CASE("random-weighting-published: 50-digit vectors") {
 TEST_CASE("random-weighting: the variances of the whole record, whatever the offset") {
   const test::Vectors inputs("fusion_inputs.csv");
   const Eigen::MatrixXd y = inputs.block("c", 5);
-  // MINQUE of n channels of one input (Rao 1970): n/(n-2) [s_i - sum s / (n (n-1))], s_i the mean square of y_i - mean(y).
+  // MINQUE of n channels of one input (Rao 1970): n/(n-2) [s_i - sum s / (n (n-1))], s_i the mean
+  // square of y_i - mean(y).
   const Eigen::ArrayXd s = (y.rowwise() - y.colwise().mean()).array().square().rowwise().mean();
   const Eigen::VectorXd expected = (5.0 / 3 * (s - s.sum() / 20)).matrix();
   for (const double offset : {0.0, 10.0, 1e3}) {

@@ -6,8 +6,8 @@
 #include "libchar/fit/bounds.hpp"
 #include "libchar/fit/curve_fit.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/power_sums.hpp"
 #include "libchar/fit/power_bins.hpp"
+#include "libchar/fit/power_sums.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/simulate/random.hpp"
@@ -126,9 +126,7 @@ TEST_CASE("property: bins of powers do not depend on the pieces of a record") {
     PowerPart whole, parts;
     whole.push(y);
     in_pieces(y, [&](std::span<const double> piece) { parts.push(piece); });
-    const auto bins = [](PowerPart& part) {
-      return power_bins(powers_of(part.finish(true)), 10);
-    };
+    const auto bins = [](PowerPart& part) { return power_bins(powers_of(part.finish(true)), 10); };
     RC_ASSERT(same_bits(energies(bins(whole)), energies(bins(parts))));
   });
 }

@@ -42,8 +42,9 @@ double truncated_power(std::size_t taps, double nu) {
 
 }  // namespace
 
-// Slopes 0.5, 1, 1.5 and 2 stand in the tables: two columns each of the coefficients, one each of the records.
-// double_precision.txt: a double implementation reaches 1.11e-15 (h) and 9.12e-16 (b) relative; ten times that is asked for.
+// Slopes 0.5, 1, 1.5 and 2 stand in the tables: two columns each of the coefficients, one each of
+// the records. double_precision.txt: a double implementation reaches 1.11e-15 (h) and 9.12e-16 (b)
+// relative; ten times that is asked for.
 TEST_CASE("coefficients agree with the 50-digit known answers") {
   const std::vector<double> h = column("fusion/kasdin.csv", 3), b = column("fusion/kasdin.csv", 4);
   REQUIRE(h.size() == 200);

@@ -1,5 +1,6 @@
 #pragma once
-// Flicker as published (N. J. Kasdin, Proc. IEEE 83 (1995) 802): coefficients, and the exact filtering of a whole record.
+// Flicker as published (N. J. Kasdin, Proc. IEEE 83 (1995) 802): coefficients, and the exact
+// filtering of a whole record.
 
 #include <algorithm>
 #include <complex>

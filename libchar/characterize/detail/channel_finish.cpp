@@ -1,6 +1,7 @@
-// A record that fits into a leaf is kept and looked at as a whole; a longer one is finished from the sums over its leaves. Which of both
-// depends on its length only. What still needs the samples of a longer one (`what_needs_all_samples`) changes no coefficient but by a
-// temperature, which is taken out of the samples.
+// A record that fits into a leaf is kept and looked at as a whole; a longer one is finished from
+// the sums over its leaves. Which of both depends on its length only. What still needs the samples
+// of a longer one (`what_needs_all_samples`) changes no coefficient but by a temperature, which is
+// taken out of the samples.
 #include "libchar/characterize/detail/channel_finish.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +31,8 @@ constexpr std::size_t kPlottedBins =
 constexpr std::size_t kFewestForMotion = 2048;
 constexpr std::uint64_t kLongForAll = std::uint64_t{1} << 17U;  // of which every m is asked for
 
-// For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
+// For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging
+// time.
 Mixture white_alone(const AllanCurve& curve) {
   Mixture theta{};
   if (!curve.points.empty())
@@ -104,7 +106,8 @@ class Finish {
   std::optional<EventSeries> series_;  ///< where the search for motion has made it
 };
 
-// Phase becomes rate. One wild reading would be two wild rates that sum to zero: the phase is cleaned, then differenced.
+// Phase becomes rate. One wild reading would be two wild rates that sum to zero: the phase is
+// cleaned, then differenced.
 void Finish::make_rate(double rate_hz) {
   LeafStage(options_, workspace_.welch).make_rate(kept_);
   if (options_.data != SampleKind::phase) {
@@ -126,7 +129,8 @@ void Finish::scale_sums(double rate_hz) {
   for (double& power : read_.sums.spectrum.power) power *= rate_hz * rate_hz;
 }
 
-// Of a clock. Of a record of leaves: below the length of its means by the first leaf, from there on by the sum of the means.
+// Of a clock. Of a record of leaves: below the length of its means by the first leaf, from there on
+// by the sum of the means.
 std::vector<NoiseType> Finish::noise_types(double rate_hz) const {
   if (options_.data == SampleKind::rate || !wants_fit()) return {};
   if (is_whole() && options_.data == SampleKind::frequency)
@@ -164,7 +168,7 @@ AllanCurve Finish::wanted_curve(const AllanCurve& octaves,
                                 double rate_hz) const {
   if (octaves_only(options_.allan, type) && (is_whole() || !options_.full_overlap)) {
     AllanCurve curve = limited(octaves, options_.allan);
-    if (options_.ten_a_decade && is_whole()) 
+    if (options_.ten_a_decade && is_whole())
       add_ten_a_decade(kept_, options_.allan, kLeafSamples, curve);
     return curve;
   }
@@ -178,9 +182,7 @@ AllanCurve Finish::wanted_curve(const AllanCurve& octaves,
   return allan_deviation(kept_, 1 / rate_hz, allan);
 }
 
-void Finish::add_curves(const AllanCurve& octaves,
-                              double rate_hz,
-                              ChannelResult& result) const {
+void Finish::add_curves(const AllanCurve& octaves, double rate_hz, ChannelResult& result) const {
   attempt(result, "Allan deviation", [&] {
     result.allan = wanted_curve(octaves, options_.allan.type, rate_hz);
   });
@@ -237,12 +239,11 @@ bool Finish::is_noise(ChannelResult& result) const {
 std::optional<EventSeries> Finish::series(double rate_hz) const {
   const std::uint64_t samples = found_.samples + found_.missing;
   if (samples < kFewestForMotion || found_.missing * 100 > samples) return std::nullopt;
-  return is_whole() ? event_series(kept_, rate_hz)
-                    : read_.sums.record.plain.means.series(rate_hz);
+  return is_whole() ? event_series(kept_, rate_hz) : read_.sums.record.plain.means.series(rate_hz);
 }
 
-// A sensor that moves shows its motion and not its noise: no coefficients of a recording that moves throughout, and a sentence
-// where a stretch of it does.
+// A sensor that moves shows its motion and not its noise: no coefficients of a recording that moves
+// throughout, and a sentence where a stretch of it does.
 bool Finish::is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s) {
   if (options_.data != SampleKind::rate || !options_.wanted.fit || !options_.fit.remedies)
     return true;
@@ -261,7 +262,8 @@ void Finish::find_digital(ChannelResult& result, double rate_hz) const {
   if (options_.data != SampleKind::rate || !options_.wanted.fit) return;
   if (found_.samples == 0) return;
   const ValueCensus census = census_of(found_);
-  const DigitalSums of_kept = is_whole() ? digital_sums(kept_, census, found_.missing) : DigitalSums{};
+  const DigitalSums of_kept =
+      is_whole() ? digital_sums(kept_, census, found_.missing) : DigitalSums{};
   result.digital = find_digital_faults(is_whole() ? of_kept : read_.sums.digital,
                                        census,
                                        rate_hz,
@@ -282,8 +284,8 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
     options.clock = options_.data != SampleKind::rate;
     options.difference_kurtosis = found_.difference_kurtosis;
     const bool of_kept = is_whole() || read_.temperature;
-    result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options)
-                         : fit_of_sums(octaves, rate_hz, options);
+    result.fit =
+        of_kept ? fit_of_kept(octaves, rate_hz, options) : fit_of_sums(octaves, rate_hz, options);
     result.fit->moving_s = std::move(moving_s);
     doubt_digital(result.digital, *result.fit);
   });
@@ -328,8 +330,9 @@ void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
   });
 }
 
-// A thread that has no channel of its own left takes a part of another's. Isolated: one that waits for it begins no other channel,
-// whose memory would come on top. A spectrum that uses the samples up comes last.
+// A thread that has no channel of its own left takes a part of another's. Isolated: one that waits
+// for it begins no other channel, whose memory would come on top. A spectrum that uses the samples
+// up comes last.
 void Finish::finish(ChannelResult& result, double rate_hz) {
   ChannelResult curve, spectrum;
   const std::size_t before = result.problems.size();
@@ -352,7 +355,8 @@ void Finish::finish(ChannelResult& result, double rate_hz) {
                          spectrum.problems.end());
 }
 
-// A clock is a few parts in a million off, not a hundredth: else somebody has named the wrong kind of data, or no nominal frequency.
+// A clock is a few parts in a million off, not a hundredth: else somebody has named the wrong kind
+// of data, or no nominal frequency.
 void Finish::doubt_frequency(ChannelResult& result) const {
   constexpr double kMostOff = 0.01;
   if (options_.data != SampleKind::frequency || found_.samples == 0) return;
@@ -375,7 +379,8 @@ std::string Finish::unit_of_rate(const std::string& unit) const {
   return options_.data == SampleKind::frequency && options_.nominal_frequency != 0 ? "1" : unit;
 }
 
-// The quality in the unit of the rate: what a model is made of. A phase's resolution and range are those of no rate.
+// The quality in the unit of the rate: what a model is made of. A phase's resolution and range are
+// those of no rate.
 ChannelQuality Finish::quality_of_rate() const {
   ChannelQuality quality = found_;
   if (options_.data == SampleKind::phase) {

@@ -30,7 +30,8 @@ struct ReadChannel {
   std::shared_ptr<const TemperatureRecord> temperature;  ///< of the log; null: none was asked for
 };
 
-/// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says why.
+/// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says
+/// why.
 ChannelResult finish_channel(ReadChannel read,
                              const CharacterizeOptions& options,
                              CharacterizeWorkspace& workspace,

@@ -21,8 +21,7 @@ void ChannelStage::push(std::span<const double> samples) {
   if (keep_) all_.insert(all_.end(), samples.begin(), samples.end());
   while (!samples.empty()) {
     if (leaf_.size() > kLeafSamples) end_leaf(false);
-    const std::size_t more =
-        std::min<std::size_t>(samples.size(), kLeafSamples + 1 - leaf_.size());
+    const std::size_t more = std::min<std::size_t>(samples.size(), kLeafSamples + 1 - leaf_.size());
     leaf_.insert(leaf_.end(), samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(more));
     meters_.push(samples.first(std::min<std::size_t>(more, more - (leaf_.size() > kLeafSamples))));
     samples = samples.subspan(more);
@@ -39,9 +38,8 @@ void ChannelStage::end_leaf(bool last) {
     spectrum_->push(rate);
   }
   const std::size_t rows = last ? leaf_.size() : stage_->rows();
-  tree_.add({0,
-             leaves_++,
-             stage_->take(std::span(leaf_).first(rows), last, std::exchange(meters_, {}))});
+  tree_.add(
+      {0, leaves_++, stage_->take(std::span(leaf_).first(rows), last, std::exchange(meters_, {}))});
   leaf_.erase(leaf_.begin(), end);
   meters_.push(leaf_);
 }

@@ -1,5 +1,6 @@
 #pragma once
-// One channel on its way through: leaf by leaf, and all of its samples besides where something needs them.
+// One channel on its way through: leaf by leaf, and all of its samples besides where something
+// needs them.
 
 #include <memory>
 #include <optional>
@@ -17,7 +18,8 @@ class ChannelStage {
 
   /// Takes samples as the log has them.
   void push(std::span<const double> samples);
-  /// Room for a record of up to this length, so that growing neither copies nor takes twice the memory.
+  /// Room for a record of up to this length, so that growing neither copies nor takes twice the
+  /// memory.
   void reserve(std::size_t samples);
   /// Lets go of everything; nothing is computed any more.
   void drop();

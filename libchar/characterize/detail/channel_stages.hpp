@@ -15,7 +15,8 @@ namespace libchar {
 /// A pass over a log: some of its channels side by side, each through a stage of its own.
 class ChannelStages final : public BlockSink {
  public:
-  /// Of the channels from `first` on as many as memory allows, or all. The workspace must live as long.
+  /// Of the channels from `first` on as many as memory allows, or all. The workspace must live as
+  /// long.
   ChannelStages(const CharacterizeOptions& options,
                 CharacterizeWorkspace& workspace,
                 std::size_t first,
@@ -26,8 +27,8 @@ class ChannelStages final : public BlockSink {
 
   /// The first channel of the next pass.
   std::size_t end() const { return first_ + stages_.size(); }
-  /// Curves and fits, two channels at a time: memory stays bounded however many there are. Throws Error(usage) where an option
-  /// needs all samples and they do not fit.
+  /// Curves and fits, two channels at a time: memory stays bounded however many there are. Throws
+  /// Error(usage) where an option needs all samples and they do not fit.
   std::vector<ChannelResult> finish(const LogInfo& log, Progress& progress);
   /// After `finish`: the temperature that was taken out; null: none was asked for.
   std::shared_ptr<const TemperatureRecord> temperature() const { return temperature_; }

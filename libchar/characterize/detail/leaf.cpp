@@ -42,11 +42,8 @@ std::vector<NoiseType> types_of_rate(std::span<const double> rate, double dt_s) 
 
 ValueCensus census_of(const ChannelQuality& quality) {
   if (quality.samples == 0) return {1, 0, 0, 0, 0};
-  return {quality.minimum,
-          quality.maximum,
-          quality.at_minimum,
-          quality.at_maximum,
-          quality.repeats};
+  return {
+      quality.minimum, quality.maximum, quality.at_minimum, quality.at_maximum, quality.repeats};
 }
 
 void SampleMeters::push(std::span<const double> samples) {

@@ -1,6 +1,6 @@
 #pragma once
-// A leaf of a log, one channel of it: taken by fresh stages that see nothing else, so that what they find depends on its samples only;
-// and two neighbours made one.
+// A leaf of a log, one channel of it: taken by fresh stages that see nothing else, so that what
+// they find depends on its samples only; and two neighbours made one.
 
 #include <cstdint>
 #include <span>
@@ -60,7 +60,8 @@ class LeafStage {
   ChannelSums take(std::span<const double> samples, bool last, SampleMeters meters);
   /// The same where nobody has metered them.
   ChannelSums take(std::span<const double> samples, bool last);
-  /// Samples as a rate: what is no measurement is missing, a frequency about its nominal one, differences of a phase.
+  /// Samples as a rate: what is no measurement is missing, a frequency about its nominal one,
+  /// differences of a phase.
   void make_rate(std::vector<double>& samples) const;
 
   void join(ChannelSums& sums, ChannelSums later);
@@ -77,7 +78,7 @@ class LeafStage {
   WelchParts spectrum_;
   bool wants_spectrum_ = false;  ///< from leaves
   WelchParts blocks_;            ///< of the fit, where the spectrum has others
-  std::vector<double> rate_;            // scratch
+  std::vector<double> rate_;     // scratch
 };
 
 using ChannelTree = LeafTree<LeafStage>;

@@ -13,7 +13,7 @@ namespace libchar {
 namespace {
 
 constexpr std::uint64_t kFewestSamples = 64;  ///< of a series
-constexpr double kMostMissing = 0.01;  ///< share: filled gaps are stiller than any sensor
+constexpr double kMostMissing = 0.01;         ///< share: filled gaps are stiller than any sensor
 
 [[noreturn]] void refuse_still(const std::string& file,
                                const std::string& what,

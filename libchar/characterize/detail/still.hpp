@@ -1,5 +1,6 @@
 #pragma once
-// The stretch of a log that is analysed where only rest is wanted: as the caller says, or the longest in which no channel moves.
+// The stretch of a log that is analysed where only rest is wanted: as the caller says, or the
+// longest in which no channel moves.
 
 #include <memory>
 #include <string>
@@ -22,7 +23,8 @@ class StillSearch final : public BlockSink {
   std::vector<MeanMeter> means_;
 };
 
-/// The stretch that `options` ask for is read: of a window in the options, Error(usage); ends that are none, Error(usage).
+/// The stretch that `options` ask for is read: of a window in the options, Error(usage); ends that
+/// are none, Error(usage).
 void check_still(const StillOptions& still, const ReadOptions& reading);
 
 /// "Only the stretch from 38.6 to 186 s was analysed, the longest in which nothing moves."

@@ -10,7 +10,8 @@ namespace libchar {
 namespace {
 
 constexpr std::string_view kKind = "stretch";
-constexpr std::uint32_t kVersion = 3;  // 2: a channel; slow means, powers of means; 3: means and pieces on the clock
+constexpr std::uint32_t kVersion =
+    3;  // 2: a channel; slow means, powers of means; 3: means and pieces on the clock
 
 void write_time(const TimeBase& time, StateWriter& to) {
   to.real(time.rate_hz);
@@ -88,8 +89,8 @@ LogInfo read_log_state(StateReader& from) {
 
 /// About as many bytes as a node takes.
 std::size_t size_of(const ChannelSums& sums) {
-  std::size_t reals =
-      65536 + sums.kept.size() + sums.spectrum.power.size() + sums.spectrum.head.size() + sums.spectrum.tail.size();
+  std::size_t reals = 65536 + sums.kept.size() + sums.spectrum.power.size() +
+                      sums.spectrum.head.size() + sums.spectrum.tail.size();
   const auto add = [&](const PowerSums& bins) {
     reals += bins.blocks.power.size() + bins.tail.size();
     for (const PooledSums& piece : bins.pieces) reals += piece.power.size();

@@ -1,6 +1,7 @@
-// Of a block of L = 2^15 means of p samples the coefficients 16 … 15.5 p L / block are used: those above are of the transforms of the
-// samples (blocks of `block`), those below of the series of means of 512 means, with the resolution of the whole segment. Both have their
-// exact expectations (BlockMeanDct, of L means of p samples and of n means of 512 p).
+// Of a block of L = 2^15 means of p samples the coefficients 16 … 15.5 p L / block are used: those
+// above are of the transforms of the samples (blocks of `block`), those below of the series of
+// means of 512 means, with the resolution of the whole segment. Both have their exact expectations
+// (BlockMeanDct, of L means of p samples and of n means of 512 p).
 #include "libchar/fit/detail/mean_series.hpp"
 
 #include <cmath>

@@ -27,7 +27,8 @@ std::uint64_t next_edge(std::uint64_t k) {
 
 using Unit = std::array<double, kTerms>;
 
-/// Adds `weight` times the mean of unit(k), k = lo..hi-1, to the sum: by Gauss-Legendre where it is smooth and wide.
+/// Adds `weight` times the mean of unit(k), k = lo..hi-1, to the sum: by Gauss-Legendre where it is
+/// smooth and wide.
 template <typename UnitAt>
 void add_run(
     std::uint64_t lo, std::uint64_t hi, double weight, bool smooth, UnitAt&& unit_at, Unit& sum) {
@@ -54,7 +55,8 @@ void add_run(
   }
 }
 
-/// Mean of unit(k) over the `kept` coefficients of lo..hi-1, run by run of those that were not clipped.
+/// Mean of unit(k) over the `kept` coefficients of lo..hi-1, run by run of those that were not
+/// clipped.
 template <typename UnitAt>
 Unit average_unit(std::uint64_t lo,
                   std::uint64_t hi,

@@ -7,7 +7,8 @@
 
 namespace libchar {
 
-/// The logarithmic bins of a power, with their expectations; `clipped`: coefficients to leave out, none when empty.
+/// The logarithmic bins of a power, with their expectations; `clipped`: coefficients to leave out,
+/// none when empty.
 void append_power_bins(const PooledPower& power,
                        double rate_hz,
                        const std::vector<char>& clipped,

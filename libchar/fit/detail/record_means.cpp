@@ -1,5 +1,6 @@
-// Temperature first: a warm-up is mostly the temperature's doing, and an event search would take it for itself. Where events are found in
-// what is left, temperature is fitted once more without them: a step is loud at the frequencies of the temperature.
+// Temperature first: a warm-up is mostly the temperature's doing, and an event search would take it
+// for itself. Where events are found in what is left, temperature is fitted once more without them:
+// a step is loud at the frequencies of the temperature.
 #include "libchar/fit/detail/record_means.hpp"
 
 #include <fmt/format.h>
@@ -23,14 +24,16 @@ bool take_events(const EventSearch& search) {
   return !search.events.empty() && !search.more && !search.telegraph;
 }
 
-/// `series` makes the series. What cannot be searched is fitted as it is; the fit says itself what it cannot do.
+/// `series` makes the series. What cannot be searched is fitted as it is; the fit says itself what
+/// it cannot do.
 template <class Series>
 EventSearch search_events(const FitOptions& options, const Series& series) {
   if (!options.events || !options.remedies) return {};
   try {
     const EventSeries& searched = series();
     if (searched.value.size() < kFewestPoints) return {};
-    // Phase noise is not among the powers of the search: where it stands, a clock would step all the time.
+    // Phase noise is not among the powers of the search: where it stands, a clock would step all
+    // the time.
     EventOptions how;
     how.steps = !options.clock;
     return find_events(searched, fitted_powers(), how, options.unit);

@@ -1,5 +1,6 @@
 #pragma once
-// What of a record is a mean and no noise: temperature, steps, a warm-up, a ramp. Taken out before the noise is fitted.
+// What of a record is a mean and no noise: temperature, steps, a warm-up, a ramp. Taken out before
+// the noise is fitted.
 
 #include <optional>
 #include <span>
@@ -18,8 +19,8 @@ struct RecordMeans {
   std::optional<TemperatureEffect> temperature;
 };
 
-/// Looks for what `options` asks for, and for what a temperature does where one is given (else null). `series` of the record, where it
-/// is there already.
+/// Looks for what `options` asks for, and for what a temperature does where one is given (else
+/// null). `series` of the record, where it is there already.
 RecordMeans without_means(std::span<const double> record,
                           double rate_hz,
                           const FitOptions& options,

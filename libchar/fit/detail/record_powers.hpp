@@ -17,9 +17,11 @@ inline constexpr std::uint64_t kSmallestTransform =
     8;  ///< shorter segments carry nothing worth their edge effects
 inline constexpr std::uint64_t kLongGap = 4096;  ///< shorter gaps are closed up
 
-/// The first coefficient of a transform of `length` points that blocks of `block` such points do not leave to the series of their means.
+/// The first coefficient of a transform of `length` points that blocks of `block` such points do
+/// not leave to the series of their means.
 std::uint64_t first_kept(std::uint64_t length, std::uint64_t block);
-/// One behind the last coefficient of a series of `points` means, each of `per_mean`, that blocks of `block` leave to it.
+/// One behind the last coefficient of a series of `points` means, each of `per_mean`, that blocks
+/// of `block` leave to it.
 std::uint64_t end_of_left(std::uint64_t points, std::uint64_t per_mean, std::uint64_t block);
 
 /// Squared coefficients first … end-1 of one transform of all points.

@@ -72,7 +72,8 @@ class TemporaryTable {
   double bytes_ = 0;
 };
 
-/// Reading, parsing and hashing; where no file can be written or read back, as slow as it is anywhere.
+/// Reading, parsing and hashing; where no file can be written or read back, as slow as it is
+/// anywhere.
 double text_byte_seconds() {
   constexpr double kSlow = 20e-9;
   const TemporaryTable table;
@@ -118,8 +119,8 @@ CostModel measured_cost() {
 }
 
 UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
-  constexpr double kReports = 0.004;    // s a channel: page, tables, model, and the disk
-  constexpr double kProgram = 64e6;     // bytes: program and libraries
+  constexpr double kReports = 0.004;  // s a channel: page, tables, model, and the disk
+  constexpr double kProgram = 64e6;   // bytes: program and libraries
   constexpr double kStageBytes = 30e6, kAtOnce = 8;  // of a channel of many leaves, in one pass
   constexpr double kStretchBytes =
       70e6;  // of the channels of a pass, or of a state and the tree that it comes to

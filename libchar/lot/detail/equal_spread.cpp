@@ -1,7 +1,8 @@
-// With the spread s that both have in common (detail/grouped_effects.hpp) and z = (y - mean of its lot) / sqrt(v + s²), the ratio of the mean
-// squares of z in the two lots is Fisher's F, exactly where either the uncertainties or the spread are nothing. F believes that the values
-// are normal: with the kurtosis g of all z, at least 3, lots of n values have 2 n / (g - (n - 3)/(n - 1)) degrees of freedom, n - 1 for
-// g = 3 (Shoemaker, Am. Stat. 57 (2003) 105).
+// With the spread s that both have in common (detail/grouped_effects.hpp) and z = (y - mean of its
+// lot) / sqrt(v + s²), the ratio of the mean squares of z in the two lots is Fisher's F, exactly
+// where either the uncertainties or the spread are nothing. F believes that the values are normal:
+// with the kurtosis g of all z, at least 3, lots of n values have 2 n / (g - (n - 3)/(n - 1))
+// degrees of freedom, n - 1 for g = 3 (Shoemaker, Am. Stat. 57 (2003) 105).
 #include "libchar/lot/detail/equal_spread.hpp"
 
 #include <algorithm>

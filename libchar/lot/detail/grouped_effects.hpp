@@ -1,5 +1,6 @@
 #pragma once
-// Values in groups, each known to some accuracy: batches of a lot, or several recordings of each device.
+// Values in groups, each known to some accuracy: batches of a lot, or several recordings of each
+// device.
 //   y_i = mu + b_g(i) + d_i + e_i,   b_g ~ N(0, between²),   d_i ~ N(0, within²),   e_i ~ N(0, v_i) with v_i known
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
-// Squares that are each known to some accuracy, some of them so little that zero is as good: noise coefficients of a lot, of which some were
-// detected and some were not.
+// Squares that are each known to some accuracy, some of them so little that zero is as good: noise
+// coefficients of a lot, of which some were detected and some were not.
 //   ln c_i ~ N(mean, spread²),   E[q_i] = c_i²,   q_i, the estimate of the square, can be below zero
 
 #include <cstddef>
@@ -17,7 +17,8 @@ struct SquareEstimates {
   std::span<const double> sd;
   std::span<const double> skewness;  ///< there; 0 or less: not known
   std::span<const double> samples;  ///< of each record: of about one length, errors are of one kind
-  /// With r = sd / square, the variance is 1 + excess r / (1 + 1.5 r) times that by the information.
+  /// With r = sd / square, the variance is 1 + excess r / (1 + 1.5 r) times that by the
+  /// information.
   double excess = 0;
 };
 
@@ -31,7 +32,8 @@ struct LognormalEffects {
   Interval spread_ci95;
 };
 
-/// Three values at least, one of them above zero. An end of an interval is infinite where the squares do not end it.
+/// Three values at least, one of them above zero. An end of an interval is infinite where the
+/// squares do not end it.
 LognormalEffects lognormal_effects(const SquareEstimates& in);
 
 }  // namespace libchar

@@ -1,9 +1,11 @@
-// Of fits of noise, v_i is not known but taken from the fit, relative to what was found: who is found too large by chance is believed to be
-// known better, and a mean with the weights 1/(v_i + s²) is too large (Doncaster & Spake, Methods Ecol. Evol. 9 (2018) 634, who use a
-// variance in common as here). So the mean has the weights of a typical v, the median of the records of about the same length; Hartung and
-// Knapp's interval holds for any weights. And theta = c² is what a fit finds without bias, so that E[ln c] = ln c - v to second order, which
-// is put back. Mean over 200 devices of three terms each: docs/theory/lots.md. The spread, which both would hardly move, is Paule and
-// Mandel's of the v_i.
+// Of fits of noise, v_i is not known but taken from the fit, relative to what was found: who is
+// found too large by chance is believed to be known better, and a mean with the weights 1/(v_i +
+// s²) is too large (Doncaster & Spake, Methods Ecol. Evol. 9 (2018) 634, who use a variance in
+// common as here). So the mean has the weights of a typical v, the median of the records of about
+// the same length; Hartung and Knapp's interval holds for any weights. And theta = c² is what a fit
+// finds without bias, so that E[ln c] = ln c - v to second order, which is put back. Mean over 200
+// devices of three terms each: docs/theory/lots.md. The spread, which both would hardly move, is
+// Paule and Mandel's of the v_i.
 #include "libchar/lot/detail/lot_figures.hpp"
 
 #include <algorithm>
@@ -86,8 +88,9 @@ std::optional<SquareInAll> square_in_lot(const Coefficient& found) {
 std::optional<LognormalEffects> effects_of_all(const LotSquares& squares,
                                                std::size_t counted,
                                                std::size_t members) {
-  // The weights of a fit are estimated as well, so that a term that is little known scatters by more than the information of its fit
-  // says: B and K of 12000 records each, known to 13 to 130 % of their squares (docs/theory/lots.md).
+  // The weights of a fit are estimated as well, so that a term that is little known scatters by
+  // more than the information of its fit says: B and K of 12000 records each, known to 13 to 130 %
+  // of their squares (docs/theory/lots.md).
   constexpr double kExcess = 0.55;
   const std::size_t known = squares.square.size();
   if (known <= counted || known < 3 || counted < 2 || 3 * counted < members) return std::nullopt;

@@ -24,7 +24,8 @@ std::optional<RandomEffects> lot_effects(std::span<const double> value,
                                          std::span<const double> variance,
                                          std::size_t members);
 
-/// The same of noise coefficients as logarithms, estimates by one fit each; `samples` of the records, one a value.
+/// The same of noise coefficients as logarithms, estimates by one fit each; `samples` of the
+/// records, one a value.
 std::optional<RandomEffects> coefficient_effects(std::span<const double> logarithm,
                                                  std::span<const double> variance,
                                                  std::span<const double> samples,
@@ -36,11 +37,12 @@ struct LogCoefficient {
 };
 LogCoefficient log_coefficient(const Coefficient& found);
 
-/// Whether a record says something of the coefficient: it was fitted, by a model that describes the record.
+/// Whether a record says something of the coefficient: it was fitted, by a model that describes the
+/// record.
 bool was_sought(Status status);
 
-/// The square of a noise coefficient, whether it was detected or not. Nothing where the model does not describe the record, or the
-/// coefficient was not fitted.
+/// The square of a noise coefficient, whether it was detected or not. Nothing where the model does
+/// not describe the record, or the coefficient was not fitted.
 std::optional<SquareInAll> square_in_lot(const Coefficient& found);
 
 /// The squares of a term over the members of a lot, one a member.
@@ -49,14 +51,16 @@ struct LotSquares {
   std::vector<std::uint32_t> member;  ///< of the group
 };
 
-/// Of all members, also those that are not detected or doubtful, where they are more than those that count, and a third of all members counts.
+/// Of all members, also those that are not detected or doubtful, where they are more than those
+/// that count, and a third of all members counts.
 std::optional<LognormalEffects> effects_of_all(const LotSquares& squares,
                                                std::size_t counted,
                                                std::size_t members);
 
 LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms);
 
-/// Of logarithms whose effects these are, without a belief in their distribution but for the interval of the standard deviation.
+/// Of logarithms whose effects these are, without a belief in their distribution but for the
+/// interval of the standard deviation.
 ArithmeticFigures arithmetic_figures(std::span<const double> logarithm,
                                      std::span<const double> variance,
                                      std::span<const double> samples);

@@ -44,12 +44,13 @@ std::string unit_title(const std::string& channel_unit);
 /// "gx of imu-x", or "gx" without a type.
 std::string channel_title(const std::string& channel, const std::string& type);
 
-/// Channels of one type and name whose units are of one quantity; and, where a type has several of one kind, all of them. Kinds first.
+/// Channels of one type and name whose units are of one quantity; and, where a type has several of
+/// one kind, all of them. Kinds first.
 std::vector<LotGroup> lot_groups(std::span<const DeviceRecord> records,
                                  const SortedRecords& sorted);
 
-/// Who stands out is asked of a channel among devices, and of a kind only where one device has all of its channels: what axes of every
-/// device differ by is no device's fault.
+/// Who stands out is asked of a channel among devices, and of a kind only where one device has all
+/// of its channels: what axes of every device differ by is no device's fault.
 bool shows_outliers(const LotGroup& group);
 
 /// What a value of the channel is multiplied by to be in the unit of the group's.
@@ -58,7 +59,8 @@ double factor_of(const LotGroup& group, const RecordedChannel& channel, DeviceQu
 /// Gives a group the unit of another one that measures the same.
 void convert_group(const std::string& channel_unit, LotGroup& group);
 
-/// Channels of one type and name in several units, whether they can be converted or not; records made with unlike settings or versions.
+/// Channels of one type and name in several units, whether they can be converted or not; records
+/// made with unlike settings or versions.
 std::vector<std::string> unlike_records(std::span<const DeviceRecord> records,
                                         const SortedRecords& sorted,
                                         const std::vector<LotGroup>& groups);

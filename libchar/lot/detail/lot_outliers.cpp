@@ -1,5 +1,5 @@
-// Every quantity of every channel is a search of its own (core/random_effects.hpp); with m of them each has the share 1/m of the
-// probability of a false alarm (Bonferroni).
+// Every quantity of every channel is a search of its own (core/random_effects.hpp); with m of them
+// each has the share 1/m of the probability of a false alarm (Bonferroni).
 #include "libchar/lot/detail/lot_outliers.hpp"
 
 #include <fmt/format.h>

@@ -7,7 +7,8 @@
 
 namespace libchar {
 
-/// Fills `searched` and `outliers` of each quantity. `probability`: of naming any device where none stands out.
+/// Fills `searched` and `outliers` of each quantity. `probability`: of naming any device where none
+/// stands out.
 void search_outliers(const Fleet& fleet, double probability, std::vector<Statistic>& statistics);
 
 }  // namespace libchar

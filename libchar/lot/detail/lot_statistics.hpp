@@ -7,8 +7,8 @@
 
 namespace libchar {
 
-/// Of the quantities that any device has something of, group by group. Outliers are not looked for here: each search has a share that
-/// depends on how many there are.
+/// Of the quantities that any device has something of, group by group. Outliers are not looked for
+/// here: each search has a share that depends on how many there are.
 std::vector<Statistic> statistics_of(const Fleet& fleet);
 
 }  // namespace libchar

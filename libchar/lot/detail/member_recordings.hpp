@@ -18,8 +18,9 @@ struct MemberRecordings {
   std::vector<LotPlace> place;
   std::vector<std::size_t> member;     ///< index into `members`
   std::vector<std::uint32_t> members;  ///< of the group, those that count
-  /// Of noise terms, the squares of all members whose records were fitted, whether they count or not; empty where one of them has none. Of
-  /// several recordings of a member, their mean and the samples of all.
+  /// Of noise terms, the squares of all members whose records were fitted, whether they count or
+  /// not; empty where one of them has none. Of several recordings of a member, their mean and the
+  /// samples of all.
   LotSquares squares;
   LotCounts counts;
   std::vector<LotCounts> batch_counts;  ///< by batch, as `batch_of` says

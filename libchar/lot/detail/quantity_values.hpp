@@ -1,5 +1,6 @@
 #pragma once
-// The values of one quantity in a group: one a member, several recordings of a member taken together.
+// The values of one quantity in a group: one a member, several recordings of a member taken
+// together.
 
 #include <optional>
 #include <span>
@@ -18,7 +19,8 @@ struct QuantityValues {
   std::vector<double> y, v;           ///< ln(value), or the value, and its variance
   /// Of the records behind each, of noise terms; empty of others.
   std::vector<double> samples;
-  /// The variances if what they have in common stood at the ends of its interval; empty where they are known.
+  /// The variances if what they have in common stood at the ends of its interval; empty where they
+  /// are known.
   std::vector<double> v_low, v_high;
   LotSquares squares;  ///< of noise terms, also of those that do not count
   std::optional<RepeatedDevices> repeats;
@@ -47,8 +49,8 @@ struct QuantityEffects {
       false;  ///< also of members that do not count, by the squares of what their records show
 };
 
-/// Of those that count, where they are enough (lot_figures.hpp); of a noise term that some have and others do not, of all where
-/// their squares are known and a third of them was detected.
+/// Of those that count, where they are enough (lot_figures.hpp); of a noise term that some have and
+/// others do not, of all where their squares are known and a third of them was detected.
 std::optional<QuantityEffects> effects_of(const QuantityValues& values, bool of_logarithms);
 
 }  // namespace libchar

@@ -1,7 +1,9 @@
-// y_ij = b_i + c_i (T_ij - T_ref) + r_ij + e_ij: bias of recording j of device i, c_i its temperature coefficient, r what the bias differs by
-// whenever the device is switched on, with one spread for all devices of the group, e the noise. A line a device, the spread pooled over all:
-// detail/grouped_lines.cpp. The interval of a slope is by Student's t with the degrees of freedom of the pooled spread. Bias at several constant
-// temperatures and its slope by least squares is the usual test of a gyroscope (IEEE Std 952, temperature sensitivity).
+// y_ij = b_i + c_i (T_ij - T_ref) + r_ij + e_ij: bias of recording j of device i, c_i its
+// temperature coefficient, r what the bias differs by whenever the device is switched on, with one
+// spread for all devices of the group, e the noise. A line a device, the spread pooled over all:
+// detail/grouped_lines.cpp. The interval of a slope is by Student's t with the degrees of freedom
+// of the pooled spread. Bias at several constant temperatures and its slope by least squares is the
+// usual test of a gyroscope (IEEE Std 952, temperature sensitivity).
 #include "libchar/lot/detail/temperature_lines.hpp"
 
 #include <algorithm>

@@ -7,8 +7,9 @@
 
 namespace libchar {
 
-/// x_t = w_t - sum_{k=1}^{taps} b_k x_{t-k} from rest, block by block: `rv-truncated-iir`. b are the coefficients of
-/// (1 - z^-1)^(1/2): b_0 = 1, b_k = b_{k-1} (k - 3/2)/k. Below some 1/(taps) cycles per sample its spectrum is flat, not 1/f.
+/// x_t = w_t - sum_{k=1}^{taps} b_k x_{t-k} from rest, block by block: `rv-truncated-iir`. b are
+/// the coefficients of (1 - z^-1)^(1/2): b_0 = 1, b_k = b_{k-1} (k - 3/2)/k. Below some 1/(taps)
+/// cycles per sample its spectrum is flat, not 1/f.
 class TruncatedKasdin {
  public:
   explicit TruncatedKasdin(std::size_t taps);
