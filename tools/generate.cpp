@@ -10,6 +10,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/json.hpp"
 #include "libchar/core/spelling.hpp"
+#include "libchar/report/schemas.hpp"
 #include "man_page.hpp"
 
 namespace sensorchar {
@@ -89,16 +90,33 @@ std::string usage_json(const ProgramUsage& program) {
   return libchar::dump_json(document);
 }
 
+// Of one document, or of all by file name.
+std::string schema_json(const std::vector<std::string>& words) {
+  const Json all = libchar::schemas();
+  if (words.size() == 1) return libchar::dump_json(all);
+  std::vector<std::string> names;
+  for (const auto& [file, schema] : all.items()) names.push_back(file.substr(0, file.find('.')));
+  if (std::find(names.begin(), names.end(), words[1]) != names.end())
+    return libchar::dump_json(all[words[1] + ".schema.json"]);
+  throw Error({ErrorKind::usage,
+               "E0202",
+               "--generate schema",
+               fmt::format("expected one of {}", fmt::join(names, ", ")),
+               words[1],
+               libchar::did_you_mean(libchar::nearest(words[1], names))});
+}
+
 std::string artefact(const ProgramUsage& program, const std::vector<std::string>& words) {
-  static const std::vector<std::string> kKinds = {"man", "bash", "zsh", "fish", "json"};
+  static const std::vector<std::string> kKinds = {"man", "bash", "zsh", "fish", "json", "schema"};
   const std::string kind = words.empty() ? "" : words[0];
-  if (words.size() > 2 || (words.size() == 2 && kind != "man"))
-    throw Error({ErrorKind::usage,
-                 "E0204",
-                 "--generate",
-                 "one argument too many",
-                 words.back(),
-                 "--generate man VERB, or --generate bash, zsh, fish or json alone"});
+  if (words.size() > 2 || (words.size() == 2 && kind != "man" && kind != "schema"))
+    throw Error(
+        {ErrorKind::usage,
+         "E0204",
+         "--generate",
+         "one argument too many",
+         words.back(),
+         "--generate man VERB or schema NAME, or --generate bash, zsh, fish or json alone"});
   if (kind == "man")
     return words.size() == 1 ? program_man_page(program)
                              : verb_man_page(program, named_verb(program, words[1]));
@@ -106,6 +124,7 @@ std::string artefact(const ProgramUsage& program, const std::vector<std::string>
   if (kind == "zsh") return zsh_completion(program);
   if (kind == "fish") return fish_completion(program);
   if (kind == "json") return usage_json(program);
+  if (kind == "schema") return schema_json(words);
   throw Error({ErrorKind::usage,
                "E0202",
                "--generate",

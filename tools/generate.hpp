@@ -1,5 +1,5 @@
 #pragma once
-// `sensorchar help [VERB]` and `sensorchar --generate man|bash|zsh|fish|json [VERB]`.
+// `sensorchar help [VERB]` and `sensorchar --generate man|bash|zsh|fish|json|schema [NAME]`.
 
 #include <optional>
 #include <string>

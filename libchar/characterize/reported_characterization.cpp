@@ -11,22 +11,12 @@
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/output_files.hpp"
 #include "libchar/core/schema.hpp"
+#include "libchar/fit/fit_json.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr std::string_view kFormats[] = {"characterization", "pooled-runs", "noise-fit"};
-
-// A report grows keys from version to version of the program: those we do not know are left alone.
-MapReader open_level(const Document& node, const std::string& file, const std::string& path) {
-  std::vector<std::string> keys;
-  for (const DocumentEntry& entry : node.map) keys.push_back(entry.key);
-  return {node, file, path, std::move(keys)};
-}
-
-MapReader open_level(const MapReader& map, const std::string& key) {
-  return open_level(map.require(key), map.file(), map.path_of(key));
-}
 
 std::string format_of(const Document& document) {
   const DocumentEntry* const format =
@@ -47,33 +37,9 @@ bool is_known(const std::string& format) {
   return std::find(std::begin(kFormats), std::end(kFormats), format) != std::end(kFormats);
 }
 
-Coefficient read_coefficient(const MapReader& map) {
-  Coefficient c;
-  const auto status = find_enum<Status>(map.word("status", words_of<Status>()));
-  c.status = *status;
-  c.value = map.maybe_number("value", kNotNegative);
-  c.upper95 = map.maybe_number("upper95", kNotNegative);
-  c.relative_sd = map.number_or("relative_sd", 0, kNotNegative);
-  if (!c.value) return c;
-  const auto ends = map.interval("ci95");
-  c.ci95 = {ends.first, ends.second};
-  if (!(ends.first <= *c.value && *c.value <= ends.second))
-    map.refuse("ci95", "the interval does not hold the value");
-  return c;
-}
-
-FitBand read_band(const MapReader& map) {
-  FitBand band;
-  band.top_hz = map.number_or("top_hz", kNone);
-  band.whole = map.flag_or("whole", true);
-  band.orders = static_cast<int>(map.count_or("shape_coefficients", 0));
-  return band;
-}
-
-std::string read_shape(const MapReader& map) {
-  const std::string kind = map.text_or("kind", "none");
-  const std::uint64_t taps = map.count_or("taps", 0);
-  return taps > 0 ? fmt::format("{} of {}", kind, taps) : kind;
+void check_interval(const MapReader& term, const Coefficient& c) {
+  if (c.value && !(c.ci95.low <= *c.value && *c.value <= c.ci95.high))
+    term.refuse("ci95", "the interval does not hold the value");
 }
 
 ReportedChannel read_channel(const MapReader& map) {
@@ -82,22 +48,26 @@ ReportedChannel read_channel(const MapReader& map) {
   out.unit = map.text_or("unit", "");
   out.fitted = map.has("goodness");
   if (!out.fitted) return out;
-  for (std::size_t t = 0; t < kTerms; ++t)
-    out.term[t] = read_coefficient(open_level(map, std::string(kTermNames[t].key)));
-  out.p = open_level(map, "goodness").number_or("p", kNone);
-  out.rate_hz = map.number("rate_hz", kPositive);
-  out.duration_s = map.number("duration_s", kPositive);
-  if (map.has("band")) out.band = read_band(open_level(map, "band"));
-  if (map.has("shape")) out.shape = read_shape(open_level(map, "shape"));
-  if (map.has("events")) out.events = map.list("events").size();
+  NoiseFit fit;
+  fit.band.top_hz = fit.goodness.p = kNone;
+  read_fields(noise_fit_fields(), map, fit);
+  for (std::size_t t = 0; t < kTerms; ++t) check_interval(map.map(kTermNames[t].key), fit.term[t]);
+  out.term = fit.term;
+  out.p = fit.goodness.p;
+  out.rate_hz = fit.rate_hz;
+  out.duration_s = fit.duration_s;
+  out.band = fit.band;
+  out.shape = name_of(fit.shape.kind);
+  if (fit.shape.taps > 0) out.shape += fmt::format(" of {}", fit.shape.taps);
+  out.events = fit.events.size();
   return out;
 }
 
 std::string recording_of(const MapReader& map) {
   if (!map.has("input")) return "";
-  const std::vector<Document>& input = map.list("input");
+  const std::vector<MapReader> input = map.maps("input");
   if (input.empty()) return "";
-  const std::string first = open_level(input[0], map.file(), "input[0]").text_or("path", "");
+  const std::string first = input[0].text_or("path", "");
   return input.size() == 1 ? first : fmt::format("{} and {} more", first, input.size() - 1);
 }
 
@@ -115,14 +85,12 @@ ReportedCharacterization read_summary(const Document& document, const std::strin
   ReportedCharacterization out;
   out.file = file;
   out.format = format;
-  const MapReader map = open_level(document, file, "");
-  if (map.has("tool")) out.program = open_level(map, "tool").text_or("version", "");
+  const MapReader map(document, file, "");
+  if (map.has("tool")) out.program = map.map("tool").text_or("version", "");
   out.recording = recording_of(map);
-  const MapReader fit = format == "noise-fit" ? map : open_level(map, "fit");
-  std::size_t i = 0;
-  for (const Document& one : fit.list("channels")) {
-    out.channels.push_back(
-        read_channel(open_level(one, file, fmt::format("{}[{}]", fit.path_of("channels"), i++))));
+  const MapReader fit = format == "noise-fit" ? map : map.map("fit");
+  for (const MapReader& one : fit.maps("channels")) {
+    out.channels.push_back(read_channel(one));
     if (out.find(out.channels.back().name) != &out.channels.back())
       fit.refuse("channels", "two channels have one name: " + out.channels.back().name);
   }

@@ -1,4 +1,4 @@
-# Man pages (compressed, as they are installed) and completions of the program, by the program.
+# Man pages (compressed, as they are installed), completions and schemas of the program, by the program.
 #   cmake -DPROGRAM=sensorchar "-DVERBS=allan|psd" -DFOLDER=pages -P write_pages.cmake
 string(REPLACE "|" ";" verbs "${VERBS}")
 find_program(GZIP gzip REQUIRED)
@@ -20,5 +20,13 @@ file(GLOB pages "${FOLDER}/man1/*.1")
 execute_process(COMMAND "${GZIP}" -9n ${pages} COMMAND_ERROR_IS_FATAL ANY)
 foreach(shell bash zsh fish)
   write_page(sensorchar.${shell} ${shell})
+endforeach()
+execute_process(COMMAND "${PROGRAM}" --generate schema OUTPUT_VARIABLE schemas COMMAND_ERROR_IS_FATAL ANY)
+string(JSON count LENGTH "${schemas}")
+math(EXPR last "${count} - 1")
+foreach(i RANGE ${last})
+  string(JSON name MEMBER "${schemas}" ${i})
+  string(JSON schema GET "${schemas}" "${name}")
+  file(WRITE "${FOLDER}/schema/${name}" "${schema}\n")
 endforeach()
 file(TOUCH "${FOLDER}/made")

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "libchar/core/decimal.hpp"
@@ -15,11 +16,32 @@
 namespace libchar {
 namespace {
 
+Json json_interval(const Interval& interval) {
+  if (std::isnan(interval.low) || std::isnan(interval.high)) return nullptr;
+  return Json::array({json_number(interval.low), json_number(interval.high)});
+}
+
+template <class T, class Element>
+Json json_list(const std::vector<T>& list, const Element& element) {
+  Json out = Json::array();
+  out.get_ref<Json::array_t&>().reserve(list.size());
+  for (const auto& one : list) out.push_back(element(one));
+  return out;
+}
+
 Json json_value(const Value& value) {
-  return std::visit(Match{[](std::monostate) { return Json(nullptr); },
-                          [](const std::vector<double>& list) { return Json(list); },
-                          [](const auto& scalar) { return Json(scalar); }},
-                    value);
+  const auto number = [](double x) { return json_number(x); };
+  const auto text = [](const std::string& x) { return Json(json_text(x)); };
+  return std::visit(
+      Match{[](std::monostate) { return Json(nullptr); },
+            [&](double x) { return number(x); },
+            [&](const std::string& x) { return text(x); },
+            [&](const std::vector<double>& list) { return json_list(list, number); },
+            [&](const std::vector<std::string>& list) { return json_list(list, text); },
+            [](const Interval& interval) { return json_interval(interval); },
+            [](const std::vector<Interval>& list) { return json_list(list, json_interval); },
+            [](const auto& plain) { return Json(plain); }},
+      value);
 }
 
 Json json_entry(const Entry& entry) {
@@ -50,6 +72,12 @@ std::string yaml_value(const Entry& entry) {
             [&](const std::string& text) { return entry.bare ? text : quoted_yaml(text); },
             [&](const std::vector<double>& list) { return listed(list, yaml_number); },
             [&](const std::vector<std::string>& list) { return listed(list, quoted_yaml); },
+            [&](const Interval& ends) {
+              return listed(std::vector{ends.low, ends.high}, yaml_number);
+            },
+            []<class T>(const std::vector<T>&) -> std::string {
+              throw std::logic_error("a list that only JSON documents have");
+            },
             [](auto whole) { return std::to_string(whole); }},
       entry.value);
 }

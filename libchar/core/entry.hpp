@@ -7,9 +7,14 @@
 #include <variant>
 #include <vector>
 
+#include "libchar/core/interval.hpp"
 #include "libchar/core/json.hpp"
 
 namespace libchar {
+
+inline bool operator==(const Interval& a, const Interval& b) {
+  return a.low == b.low && a.high == b.high;
+}
 
 using Value = std::variant<std::monostate,  // null
                            bool,
@@ -18,7 +23,11 @@ using Value = std::variant<std::monostate,  // null
                            std::int64_t,
                            std::string,
                            std::vector<double>,
-                           std::vector<std::string>>;
+                           std::vector<std::string>,
+                           std::vector<bool>,
+                           std::vector<std::uint64_t>,
+                           Interval,
+                           std::vector<Interval>>;
 
 /// One key of a document with its value, or with the keys below it.
 struct Entry {
@@ -47,7 +56,7 @@ Value finite_or_null(double value);
 /// {name, version} of this program.
 Entry tool_entry(std::string_view key = "tool");
 
-/// Doubles in shortest form; a number that is not finite is for the caller to keep out (dump_json refuses it).
+/// Numbers that are not finite are null, and so is an interval with an end that is NaN.
 Json json_of(const std::vector<Entry>& entries);
 
 /// Numbers read back to the same double in YAML 1.1 and 1.2 readers; what is not finite is null.

@@ -59,6 +59,15 @@ struct WordSlot {
   void (*set)(void*, int);
 };
 
+/// Parts with rows of their own: of a vector, or the one of an optional.
+struct PartsSlot {
+  void* at;
+  std::size_t (*size)(const void*);
+  void (*resize)(void*, std::size_t);
+  void* (*part)(void*, std::size_t);
+  const void* usual;  ///< what absent keys mean
+};
+
 /// Where the value of a row is in memory: `void*` is a part with rows of its own.
 using Slot = std::variant<void*,
                           bool*,
@@ -70,12 +79,25 @@ using Slot = std::variant<void*,
                           std::optional<std::int64_t>*,
                           std::vector<double>*,
                           std::vector<std::string>*,
-                          WordSlot>;
+                          WordSlot,
+                          int*,
+                          Interval*,
+                          std::optional<Interval>*,
+                          std::vector<Interval>*,
+                          PartsSlot>;
 
 enum class Written {
-  always,
+  usual,     ///< as `when_set`, in `always(…)` as `always`
+  always,    ///< null where it is not known
   when_set,  ///< when it differs from what an absent key means
+  if_known,  ///< when `known` says so
   never,     ///< read only
+};
+
+/// How the parts of a row are written.
+enum class Layout {
+  one,      ///< the keys of each part below the key: an object, or one of a list
+  columns,  ///< a list for each key of a part, as long as there are parts
 };
 
 struct FieldText {
@@ -86,18 +108,23 @@ struct FieldText {
   std::string_view comment = "";    ///< in YAML; "{NAME}" stands for a substitution
   std::string_view meaning = "";    ///< in docs; the comment when empty
   std::string_view otherwise = "";  ///< in docs: what an absent key means
-  Written written = Written::when_set;
+  Written written = Written::usual;
+  /// Of the object: whether the value is known; null, or no key, where it is not (`when<has_value>`).
+  bool (*known)(const void* object) = nullptr;
   bool required = false;
   bool quoted = false;  ///< a word that YAML 1.1 would not take for a text: yes, no
   Entry::Form form = Entry::Form::value;  ///< in YAML, of a list or of a part with rows of its own
 };
 
 struct Field {
-  std::string_view key;  ///< empty: an empty line of YAML
+  /// Empty: an empty line of YAML, or the keys of a part stand beside those of the object.
+  std::string_view key;
   Slot (*slot)(void* object) = nullptr;
   FieldText text = {};
   std::string_view kind = "";  ///< in docs: "number", "text"…
   std::vector<Field> below = {};
+  Layout layout = Layout::one;
+  bool optional = false;                         ///< the member itself may be empty
   std::optional<Value> constant = std::nullopt;  ///< in place of the slot: always written
   /// In place of the slot, for what is no single member.
   void (*read)(const MapReader& at, std::string_view key, void* object) = nullptr;
@@ -146,6 +173,44 @@ Slot slot_of(V& value) {
   }
 }
 
+// Of a vector, or of an optional as a vector of none or one.
+template <class V>
+Slot parts_slot_of(V& value) {
+  using Part = typename V::value_type;
+  static const Part usual{};
+  PartsSlot slot{&value, nullptr, nullptr, nullptr, &usual};
+  if constexpr (std::is_same_v<V, std::optional<Part>>) {
+    slot.size = [](const void* at) {
+      return std::size_t{static_cast<const V*>(at)->has_value() ? 1U : 0U};
+    };
+    slot.resize = [](void* at, std::size_t) { static_cast<V*>(at)->emplace(); };
+    slot.part = [](void* at, std::size_t) -> void* { return &**static_cast<V*>(at); };
+  } else {
+    slot.size = [](const void* at) { return static_cast<const V*>(at)->size(); };
+    slot.resize = [](void* at, std::size_t n) { static_cast<V*>(at)->resize(n); };
+    slot.part = [](void* at, std::size_t i) -> void* { return &(*static_cast<V*>(at))[i]; };
+  }
+  return slot;
+}
+
+template <auto First, auto... Rest>
+Slot parts_slot_at(void* object) {
+  using T = typename MemberOf<decltype(First)>::Class;
+  return parts_slot_of(((static_cast<T*>(object)->*First).*....*Rest));
+}
+
+/// What a function takes and gives.
+template <class Function>
+struct GetterOf;
+template <class V, class T>
+struct GetterOf<V (*)(const T&)> {
+  using Class = T;
+  using Type = V;
+};
+
+/// "text", "number"… of a value.
+std::string_view kind_of(const Value& value);
+
 // What is only written is asked for its slots too, and not changed.
 template <auto First, auto... Rest>
 Slot slot_at(void* object) {
@@ -180,10 +245,78 @@ template <auto First, auto... Rest>
 auto field(std::string_view key, const FieldText& text = {}) {
   using T = typename fields_detail::MemberOf<decltype(First)>::Class;
   T object{};
-  return Row<T>{{key,
-                 &fields_detail::slot_at<First, Rest...>,
-                 fields_detail::with_enum_words<fields_detail::MemberAt<First, Rest...>>(text),
-                 fields_detail::kind_of(fields_detail::slot_at<First, Rest...>(&object))}};
+  using Member = fields_detail::MemberAt<First, Rest...>;
+  Field row{key,
+            &fields_detail::slot_at<First, Rest...>,
+            fields_detail::with_enum_words<Member>(text),
+            fields_detail::kind_of(fields_detail::slot_at<First, Rest...>(&object))};
+  row.optional = requires(Member member) {
+    member.has_value();
+  };
+  return Row<T>{std::move(row)};
+}
+
+/// For `FieldText::known`: Known is bool(const T&), or a lambda without captures like it.
+template <auto Known>
+bool when(const void* object) {
+  using T = typename fields_detail::GetterOf<decltype(+Known)>::Class;
+  return Known(*static_cast<const T*>(object));
+}
+
+/// What follows from the object and is only written: Get is V(const T&), V a value of a document or a word.
+template <auto Get>
+auto computed(std::string_view key, const FieldText& text = {}) {
+  using Getter = fields_detail::GetterOf<decltype(+Get)>;
+  using T = typename Getter::Class;
+  using V = std::conditional_t<std::is_convertible_v<typename Getter::Type, std::string_view>,
+                               std::string,
+                               typename Getter::Type>;
+  Field row{key, nullptr, text, fields_detail::kind_of(Value(V{}))};
+  row.read = [](const MapReader&, std::string_view, void*) {};
+  row.write = [](const Field& f, const void* object, std::vector<Entry>& out) {
+    out.push_back({std::string(f.key), Value(V(Get(*static_cast<const T*>(object))))});
+  };
+  return Row<T>{std::move(row)};
+}
+
+/// The same, a list of parts with rows of their own: Get is std::vector<Part>(const T&).
+template <auto Get, class Part>
+auto computed_list(std::string_view key, const Fields<Part>& rows, const FieldText& text = {}) {
+  using T = typename fields_detail::GetterOf<decltype(+Get)>::Class;
+  Field row{key, nullptr, text, "list", rows.rows};
+  row.read = [](const MapReader&, std::string_view, void*) {};
+  row.write = [](const Field& f, const void* object, std::vector<Entry>& out) {
+    Entry list = part_entry(std::string(f.key), {}, Entry::Form::list);
+    const Part usual{};
+    for (const Part& part : Get(*static_cast<const T*>(object)))
+      list.below.push_back(part_entry("", fields_detail::entries(f.below, &part, &usual, {})));
+    out.push_back(std::move(list));
+  };
+  return Row<T>{std::move(row)};
+}
+
+/// A list of parts that have rows of their own.
+template <auto First, auto... Rest, class Part>
+auto list_of(std::string_view key, const Fields<Part>& rows, const FieldText& text = {}) {
+  using T = typename fields_detail::MemberOf<decltype(First)>::Class;
+  return Row<T>{{key, &fields_detail::parts_slot_at<First, Rest...>, text, "list", rows.rows}};
+}
+
+/// A part that need not be there: an object, or null.
+template <auto Member, class Part>
+auto maybe_part(std::string_view key, const Fields<Part>& rows, const FieldText& text = {}) {
+  using T = typename fields_detail::MemberOf<decltype(Member)>::Class;
+  Field row{key, &fields_detail::parts_slot_at<Member>, text, "", rows.rows};
+  row.optional = true;
+  return Row<T>{std::move(row)};
+}
+
+/// A list of parts in columns; without a key their lists stand beside the keys of the object.
+template <auto First, auto... Rest, class Part>
+auto columns_of(std::string_view key, const Fields<Part>& rows, const FieldText& text = {}) {
+  auto row = list_of<First, Rest...>(key, rows, text);
+  row.field.layout = Layout::columns;
+  return row;
 }
 
 /// A key with keys below it, about a member that has rows of its own.
@@ -191,6 +324,12 @@ template <auto Member, class Part>
 auto part(std::string_view key, const Fields<Part>& rows, const FieldText& text = {}) {
   using T = typename fields_detail::MemberOf<decltype(Member)>::Class;
   return Row<T>{{key, &fields_detail::slot_at<Member>, text, "", rows.rows}};
+}
+
+/// The keys of a part beside those of the object.
+template <auto Member, class Part>
+auto beside(const Fields<Part>& rows) {
+  return part<Member>("", rows);
 }
 
 /// The same about the object itself: the file has a level that the struct has not.
@@ -260,11 +399,25 @@ std::vector<Entry> entries_of(const Fields<T>& fields,
   return fields_detail::entries(fields.rows, &object, &defaults, substitutions);
 }
 
-/// The same rows, all of them written always.
+/// The JSON of a document about `object`.
+template <class T>
+auto document_of(const Fields<T>& fields, const T& object) {
+  return json_of(entries_of(fields, object));
+}
+
+/// The same rows, written always where they say nothing else.
 template <class T>
 Fields<T> always(Fields<T> fields) {
-  for (Field& row : fields.rows) row.text.written = Written::always;
+  for (Field& row : fields.rows)
+    if (row.text.written == Written::usual) row.text.written = Written::always;
   return fields;
+}
+
+/// The rows of both.
+template <class T>
+Fields<T> joined(Fields<T> first, const Fields<T>& second) {
+  first.rows.insert(first.rows.end(), second.rows.begin(), second.rows.end());
+  return first;
 }
 
 /// The rows of these keys in this order, each written always or when it is set.
@@ -278,6 +431,10 @@ Fields<T> selected(const Fields<T>& fields,
       if (row.key == key) out.rows.emplace_back(row).text.written = written;
   return out;
 }
+
+/// JSON Schema of an object that these rows describe: types, words, units and meanings; further keys are allowed.
+/// `file`: one that people write, where only what is `required` has to be there, and one bare value is a list of one.
+Json schema_of(std::span<const Field> rows, bool file = false);
 
 /// "| key | value | meaning |" in Markdown, the rows of a part below it with a dash in front.
 std::string markdown_table(std::span<const Field> rows);

@@ -8,6 +8,7 @@
 
 #include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
 #include "libchar/core/spelling.hpp"
 
 namespace libchar {
@@ -76,11 +77,8 @@ std::string shown(const Document& value) {
   return value.text;
 }
 
-MapReader::MapReader(const Document& node,
-                     std::string file,
-                     std::string path,
-                     std::vector<std::string> keys)
-    : node_(&node), file_(std::move(file)), path_(std::move(path)) {
+MapReader::MapReader(const Document& node, std::string file, std::string path)
+    : node_(&node), file_(std::move(file)), path_(std::move(path)), any_keys_(true) {
   if (node.kind != Document::Kind::map)
     fail("E0541",
          where(node),
@@ -89,6 +87,14 @@ MapReader::MapReader(const Document& node,
                      kind_name(node.kind)),
          node.text,
          "");
+}
+
+MapReader::MapReader(const Document& node,
+                     std::string file,
+                     std::string path,
+                     std::vector<std::string> keys)
+    : MapReader(node, std::move(file), std::move(path)) {
+  any_keys_ = false;
   for (const DocumentEntry& entry : node.map) {
     if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
     const auto near = nearest(entry.key, keys);
@@ -224,20 +230,40 @@ std::string MapReader::word(std::string_view key, const std::vector<std::string>
 }
 
 std::pair<double, double> MapReader::interval(std::string_view key) const {
-  const std::vector<double> ends = numbers(key);
-  if (ends.size() == 2 && ends[0] <= ends[1]) return {ends[0], ends[1]};
+  const Interval ends = interval_in(key, require(key));
+  return {ends.low, ends.high};
+}
+
+Interval MapReader::interval_in(std::string_view key, const Document& value) const {
+  constexpr double kFarthest[] = {-INFINITY, INFINITY};
+  double ends[2] = {};
+  bool right = value.kind == Document::Kind::list && value.list.size() == 2;
+  for (std::size_t i = 0; i < 2 && right; ++i) {
+    const Document& end = value.list[i];
+    const bool none = any_keys_ && end.kind == Document::Kind::null;
+    ends[i] = none ? kFarthest[i] : end.number;
+    right = none || end.kind == Document::Kind::number;
+  }
+  if (right && ends[0] <= ends[1]) return {ends[0], ends[1]};
   fail("E0543",
-       where(require(key)),
+       where(value),
        fmt::format("{}: expected two numbers [low, high], the lower first", path_of(key)),
-       shown(require(key)),
+       shown(value),
        "");
 }
 
 std::vector<double> MapReader::numbers(std::string_view key) const {
-  const Document& value = require(key);
+  return numbers_in(key, require(key));
+}
+
+std::vector<double> MapReader::numbers_in(std::string_view key, const Document& value) const {
   if (value.kind != Document::Kind::list) return {checked(key, value, kAnyNumber)};
   std::vector<double> out;
-  for (const Document& element : value.list) out.push_back(checked(key, element, kAnyNumber));
+  out.reserve(value.list.size());
+  for (const Document& element : value.list)
+    out.push_back(any_keys_ && element.kind == Document::Kind::null
+                      ? kNone
+                      : checked(key, element, kAnyNumber));
   return out;
 }
 
@@ -263,8 +289,36 @@ const std::vector<Document>& MapReader::list(std::string_view key) const {
        "");
 }
 
+const std::vector<Document>& MapReader::list(std::string_view key, std::size_t length) const {
+  const std::vector<Document>& elements = list(key);
+  if (elements.size() == length) return elements;
+  fail("E0982",
+       where(require(key)),
+       fmt::format("{}: {} values, {} expected: one a point of the curve",
+                   path_of(key),
+                   elements.size(),
+                   length),
+       "",
+       "was the report edited? write it again");
+}
+
+MapReader MapReader::below(const Document& node,
+                           std::string path,
+                           std::vector<std::string> keys) const {
+  return any_keys_ ? MapReader(node, file_, std::move(path))
+                   : MapReader(node, file_, std::move(path), std::move(keys));
+}
+
 MapReader MapReader::map(std::string_view key, std::vector<std::string> keys) const {
-  return MapReader(require(key), file_, path_of(key), std::move(keys));
+  return below(require(key), path_of(key), std::move(keys));
+}
+
+std::vector<MapReader> MapReader::maps(std::string_view key,
+                                       const std::vector<std::string>& keys) const {
+  std::vector<MapReader> out;
+  for (const Document& node : list(key))
+    out.push_back(below(node, fmt::format("{}[{}]", path_of(key), out.size()), keys));
+  return out;
 }
 
 std::string MapReader::where(const Document& value) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libchar/core/document.hpp"
+#include "libchar/core/interval.hpp"
 
 namespace libchar {
 
@@ -31,6 +32,9 @@ class MapReader {
             std::string file,
             std::string path,
             std::vector<std::string> keys);
+  /// Of a report, which grows keys from version to version: those that nobody asks for are left alone, here and below, and
+  /// what is null in a list is NaN.
+  MapReader(const Document& node, std::string file, std::string path);
 
   bool has(std::string_view key) const { return get(key) != nullptr; }
   const Document* get(std::string_view key) const;
@@ -50,14 +54,23 @@ class MapReader {
   std::string word(std::string_view key, const std::vector<std::string>& words) const;
   /// A list of exactly two numbers, the first below the second.
   std::pair<double, double> interval(std::string_view key) const;
+  /// The same, `value` standing behind `key` or in its list; of a report an end may be null: infinite.
+  Interval interval_in(std::string_view key, const Document& value) const;
   /// A list of numbers; one bare number is a list of one.
   std::vector<double> numbers(std::string_view key) const;
+  /// The same, `value` standing in the list behind `key`.
+  std::vector<double> numbers_in(std::string_view key, const Document& value) const;
   /// A list of texts; one bare text is a list of one.
   std::vector<std::string> texts(std::string_view key) const;
   /// The elements of a list.
   const std::vector<Document>& list(std::string_view key) const;
+  /// The same, refused where there are not so many: lists that go together.
+  const std::vector<Document>& list(std::string_view key, std::size_t length) const;
   /// The map behind `key`.
-  MapReader map(std::string_view key, std::vector<std::string> keys) const;
+  MapReader map(std::string_view key, std::vector<std::string> keys = {}) const;
+  /// The maps of the list behind `key`.
+  std::vector<MapReader> maps(std::string_view key,
+                              const std::vector<std::string>& keys = {}) const;
 
   /// "FILE:LINE:COL" of a value (FILE when unknown).
   std::string where(const Document& value) const;
@@ -71,9 +84,11 @@ class MapReader {
 
  private:
   double checked(std::string_view key, const Document& value, NumberRange range) const;
+  MapReader below(const Document& node, std::string path, std::vector<std::string> keys) const;
 
   const Document* node_;
   std::string file_, path_;
+  bool any_keys_ = false;
 };
 
 /// Checks `format` and `version` of a whole file before anything else of it: another format and a

@@ -74,18 +74,18 @@ void read_document(FigureSource& out, const Document& document, const std::strin
                      format == "noise-fit" || format == "pooled-runs";
   if (!known) refuse_document(file, format);
   check_format(document, file, format, 1);
-  const MapReader map = open_report(document, file, "");
+  const MapReader map(document, file, "");
   if (format == "allan") return add_allan_curves(out, map);
   if (format == "spectrum") return add_spectra(out, map);
   if (format == "noise-fit") return add_residuals(out, map);
-  if (map.has("allan")) add_allan_curves(out, open_report(map, "allan"));
-  if (map.has("spectrum")) add_spectra(out, open_report(map, "spectrum"));
+  if (map.has("allan")) add_allan_curves(out, map.map("allan"));
+  if (map.has("spectrum")) add_spectra(out, map.map("spectrum"));
   if (map.has("fit")) {
-    add_residuals(out, open_report(map, "fit"));
-    add_fit_to_curves(out, open_report(map, "fit"));
+    add_residuals(out, map.map("fit"));
+    add_fit_to_curves(out, map.map("fit"));
   }
-  if (map.has("trace")) add_traces(out, open_report(map, "trace"));
-  if (map.has("verification")) add_simulated(out, open_report(map, "verification"));
+  if (map.has("trace")) add_traces(out, map.map("trace"));
+  if (map.has("verification")) add_simulated(out, map.map("verification"));
 }
 
 bool ends_like_a_document(const std::string& path) {

@@ -2,25 +2,19 @@
 // What a figure is drawn from: reports of characterizations and replays, curves, sensor models. A
 // report is the document that its page draws from.
 
-#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/characterize/model_curve.hpp"
 #include "libchar/core/document.hpp"
 #include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
-
-/// A term's straight line on logarithmic axes.
-struct SourceLine {
-  Term term = Term::white;
-  std::array<double, 2> x{}, y{};
-};
 
 /// Where a coefficient is read off an Allan curve.
 struct SourceMark {
@@ -41,17 +35,16 @@ struct SourceCurve {
   std::vector<double> x;  ///< averaging time in s, or frequency in Hz
   std::vector<double> y, low68, high68, low95, high95, model, data_sheet;
   std::vector<bool> unreliable;
-  std::vector<SourceLine> lines;
+  std::vector<Asymptote> lines;
   std::vector<SourceMark> marks;
   std::vector<double> simulated_x,
       simulated_y;                 ///< of the record that was simulated from the model
   std::vector<Interval> left_out;  ///< of the abscissa: no coefficient comes from there
 };
 
-/// Residuals of a fit, in standard deviations, over frequency (of the fit of a curve: averaging time in s).
+/// Residuals of a fit, in standard deviations, over frequency.
 struct SourceResiduals {
   std::string channel;
-  bool over_tau = false;
   std::vector<double> x, z;
   std::vector<bool> outside;  ///< of the band of the fit
 };

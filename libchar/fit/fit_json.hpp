@@ -3,10 +3,15 @@
 
 #include <string>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/fields.hpp"
 #include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
+
+/// What a channel of a document says of its fit beside its name and unit. "{unit}" and "{white_noise}"… stand for the units.
+const Fields<NoiseFit>& noise_fit_fields();
+/// "residuals": long, and on request only.
+const Fields<NoiseFit>& fit_residual_fields();
 
 /// Keys that scripts rely on: name, unit, one object per term {value, ci95, status, upper95…},
 /// second_opinion, goodness. What is not known is null, never absent among those. Residuals only on

@@ -6,50 +6,187 @@
 #include "libchar/core/document_file.hpp"
 #include "libchar/core/sha256.hpp"
 #include "libchar/core/version.hpp"
+#include "libchar/log/binary/sidecar.hpp"
 
 namespace libchar {
 namespace {
 
-Json texts(const std::vector<std::string>& list) {
-  Json out = Json::array();
-  for (const std::string& text : list) out.push_back(json_text(text));
-  return out;
+template <class T>
+void pass_over(const MapReader&, std::string_view, T&) {}
+
+// ---- the head of a document ----
+
+struct InputFile {
+  std::string path, sha256;
+  std::uint64_t bytes = 0;
+};
+
+struct FileWarning {
+  std::string file;
+  Warning warning;
+};
+
+struct DocumentHead {
+  std::string format;
+  std::vector<std::string> command;
+  std::vector<InputFile> input;
+  std::vector<FileWarning> warnings;
+};
+
+const Fields<InputFile>& input_fields() {
+  using T = InputFile;
+  static const Fields<T> rows = always(Fields<T>{
+      field<&T::path>("path"),
+      field<&T::sha256>("sha256", {.known = when<[](const T& f) { return !f.sha256.empty(); }>}),
+      field<&T::bytes>("bytes"),
+  });
+  return rows;
 }
 
-Json known_text(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
+const Fields<FileWarning>& warning_fields() {
+  using T = FileWarning;
+  static const Fields<T> rows =
+      joined(Fields<T>{field<&T::file>("file")},
+             always(Fields<T>{
+                 field<&T::warning, &Warning::code>("code"),
+                 field<&T::warning, &Warning::message>("message"),
+                 field<&T::warning, &Warning::count>("count"),
+                 field<&T::warning, &Warning::places>("where", {.meaning = "the first three"}),
+             }));
+  return rows;
 }
 
-Json warning_json(const std::string& file, const Warning& w) {
-  return {{"file", json_text(file)},
-          {"code", w.code},
-          {"message", json_text(w.message)},
-          {"count", w.count},
-          {"where", texts(w.places)}};
+const Fields<DocumentHead>& head_fields() {
+  using T = DocumentHead;
+  static const Fields<T> tool = always(Fields<T>{
+      computed<[](const T&) { return std::string("sensorchar"); }>("name"),
+      computed<[](const T&) { return version(); }>("version"),
+      computed<[](const T&) { return build(); }>("build"),
+  });
+  static const Fields<T> rows = always(Fields<T>{
+      field<&T::format>("format"),
+      computed<[](const T&) { return std::uint64_t{1}; }>("version"),
+      level<T>("tool", tool, {.meaning = "the program that wrote the document"}),
+      field<&T::command>("command", {.meaning = "its words"}),
+      list_of<&T::input>("input", input_fields(), {.meaning = "each file read"}),
+      list_of<&T::warnings>("warnings", warning_fields()),
+  });
+  return rows;
 }
 
-Json start_json(const TimeBase& time) {
-  return time.start_ns ? Json(*time.start_ns) : Json(nullptr);
+// ---- a recording ----
+
+struct DescribedRecording {
+  LogInfo info;
+  std::vector<DescribedChannel> channels;
+};
+
+const Fields<Channel>& topic_field_fields() {
+  static const Fields<Channel> rows =
+      always(Fields<Channel>{field<&Channel::name>("name"), field<&Channel::unit>("unit")});
+  return rows;
 }
 
-Json time_json(const TimeBase& time) {
-  return {{"column", json_text(time.column)},
-          {"unit", json_text(time.unit)},
-          {"unit_guessed", time.unit_guessed},
-          {"from_stamps", time.from_stamps},
-          {"start_ns", start_json(time)}};
+const Fields<LogTopic>& topic_fields() {
+  using T = LogTopic;
+  static const Fields<T> rows = always(Fields<T>{
+      field<&T::name>("name"),
+      field<&T::type>("type"),
+      field<&T::rows>("rows"),
+      field<&T::rate_hz>("rate_hz", {.known = when<[](const T& t) { return 0 < t.rate_hz; }>}),
+      field<&T::why_not>("why_not", {.meaning = "why no field can be read"}),
+      list_of<&T::fields>("fields", topic_field_fields()),
+  });
+  return rows;
 }
 
-Json topic_json(const LogTopic& topic) {
-  Json out = {{"name", json_text(topic.name)},
-              {"type", json_text(topic.type)},
-              {"rows", topic.rows},
-              {"rate_hz", topic.rate_hz > 0 ? json_number(topic.rate_hz) : Json(nullptr)},
-              {"why_not", json_text(topic.why_not)},
-              {"fields", Json::array()}};
-  for (const Channel& field : topic.fields)
-    out["fields"].push_back({{"name", json_text(field.name)}, {"unit", json_text(field.unit)}});
-  return out;
+void write_repairs(const Field& row, const DescribedRecording& recording, std::vector<Entry>& out) {
+  Entry counts = part_entry(std::string(row.key), {});
+  for (const Warning& w : recording.info.warnings.list()) counts.below.push_back({w.code, w.count});
+  out.push_back(std::move(counts));
+}
+
+bool has_rate(const DescribedRecording& recording) {
+  return recording.info.time.rate_hz > 0;
+}
+
+bool has_topics(const DescribedRecording& recording) {
+  return !recording.info.topics.empty();
+}
+
+}  // namespace
+
+const Fields<DescribedChannel>& described_channel_fields() {
+  using T = DescribedChannel;
+  using Q = ChannelQuality;
+  static const auto kSampled = when<[](const T& c) { return 0 < c.quality.samples; }>;
+  static const auto kVaries =
+      when<[](const T& c) { return c.quality.minimum < c.quality.maximum; }>;
+  static const Fields<T> rows = always(Fields<T>{
+      field<&T::channel, &Channel::name>("name"),
+      field<&T::channel, &Channel::unit>("unit"),
+      field<&T::quality, &Q::missing>("missing"),
+      field<&T::quality, &Q::beyond>("beyond_range",
+                                     {.meaning = "of the missing ones: too large to be measured"}),
+      field<&T::quality, &Q::samples>("samples"),
+      field<&T::channel, &Channel::integer>("integer"),
+      field<&T::quality, &Q::mean>("mean"),
+      field<&T::quality, &Q::standard_deviation>("standard_deviation"),
+      field<&T::quality, &Q::minimum>("minimum", {.known = kSampled}),
+      field<&T::quality, &Q::maximum>("maximum", {.known = kSampled}),
+      field<&T::quality, &Q::resolution>("resolution"),
+      field<&T::quality, &Q::distinct_values>("distinct_values"),
+      field<&T::quality, &Q::saturated>("saturated"),
+      field<&T::quality, &Q::longest_stuck>("longest_stuck"),
+      field<&T::quality, &Q::difference_kurtosis>("difference_kurtosis", {.known = kVaries}),
+      field<&T::quality, &Q::float32>("float32"),
+      field<&T::quality, &Q::float32_step>("float32_step"),
+      field<&T::quality, &Q::suggestions>("suggestions"),
+  });
+  return rows;
+}
+
+namespace {
+
+const Fields<DescribedRecording>& recording_fields() {
+  using T = DescribedRecording;
+  using L = LogInfo;
+  using B = TimeBase;
+  static const auto kHashed = when<[](const T& r) { return !r.info.sha256.empty(); }>;
+  static const Fields<T> rows = always(Fields<T>{
+      field<&T::info, &L::file>("file"),
+      field<&T::info, &L::sha256>("sha256", {.known = kHashed}),
+      field<&T::info, &L::bytes>("bytes"),
+      field<&T::info, &L::format>("format", {.meaning = "of the log"}),
+      field<&T::info, &L::rows>("rows", {.meaning = "used, dropped and outside the window"}),
+      field<&T::info, &L::rows_used>("rows_used"),
+      field<&T::info, &L::rows_dropped>("rows_dropped"),
+      field<&T::info, &L::rows_outside>("rows_outside"),
+      field<&T::info, &L::samples>("samples"),
+      list_of<&T::channels>("channels", described_channel_fields()),
+      field<&T::info, &L::time, &B::rate_hz>("rate_hz", {.known = when<has_rate>}),
+      field<&T::info, &L::time, &B::jitter_s>("jitter_s"),
+      field<&T::info, &L::time, &B::max_deviation_s>("max_deviation_s"),
+      field<&T::info, &L::time, &B::gaps>("gaps"),
+      field<&T::info, &L::time, &B::missing_samples>("missing_samples"),
+      field<&T::info, &L::time, &B::column>("time_column"),
+      field<&T::info, &L::time, &B::unit>("time_unit"),
+      field<&T::info, &L::time, &B::unit_guessed>("time_unit_guessed"),
+      field<&T::info, &L::time, &B::from_stamps>("rate_from_stamps"),
+      field<&T::info, &L::time, &B::start_ns>("start_ns", {.meaning = "stamp of the first sample"}),
+      custom<T, pass_over<T>, write_repairs>("repairs", "counts", {.meaning = "counts by kind"}),
+      field<&T::info, &L::guesses>("guesses"),
+      field<&T::info, &L::dialect>("dialect"),
+      field<&T::info, &L::topic>(
+          "topic",
+          {.meaning = "that was read", .written = Written::if_known, .known = when<has_topics>}),
+      list_of<&T::info, &L::topics>("topics",
+                                    topic_fields(),
+                                    {.meaning = "of a log with several streams",
+                                     .written = Written::if_known,
+                                     .known = when<has_topics>}),
+  });
+  return rows;
 }
 
 }  // namespace
@@ -57,19 +194,31 @@ Json topic_json(const LogTopic& topic) {
 Json document_head(std::string_view format,
                    const std::vector<std::string>& command,
                    const std::vector<const LogInfo*>& logs) {
-  Json head = {{"format", format}, {"version", 1}};
-  head["tool"] = {{"name", "sensorchar"}, {"version", std::string(version())}, {"build", build()}};
-  head["command"] = texts(command);
-  head["input"] = Json::array();
-  head["warnings"] = Json::array();
+  DocumentHead head{std::string(format), command, {}, {}};
   for (const LogInfo* log : logs) {
-    head["input"].push_back({{"path", json_text(log->file)},
-                             {"sha256", known_text(log->sha256)},
-                             {"bytes", log->bytes}});
-    for (const Warning& w : log->warnings.list())
-      head["warnings"].push_back(warning_json(log->file, w));
+    head.input.push_back({log->file, log->sha256, log->bytes});
+    for (const Warning& w : log->warnings.list()) head.warnings.push_back({log->file, w});
   }
-  return head;
+  return document_of(head_fields(), head);
+}
+
+Json warnings_json(const Warnings& warnings) {
+  Json out = Json::array();
+  for (const Warning& w : warnings.list())
+    out.push_back(document_of(warning_fields(), FileWarning{"", w}));
+  return out;
+}
+
+std::span<const Field> document_head_rows() {
+  return head_fields().rows;
+}
+
+std::span<const Field> recording_rows() {
+  return recording_fields().rows;
+}
+
+std::span<const Field> sidecar_rows() {
+  return sidecar_fields().rows;
 }
 
 LogInfo document_info(const std::string& path) {
@@ -83,64 +232,11 @@ LogInfo document_info(const std::string& path) {
   return info;
 }
 
-Json channel_json(const Channel& channel, const ChannelQuality& q) {
-  Json out = {{"name", json_text(channel.name)}, {"unit", json_text(channel.unit)}};
-  out["missing"] = q.missing;
-  out["beyond_range"] = q.beyond;
-  out["samples"] = q.samples;
-  out["integer"] = channel.integer;
-  out["mean"] = json_number(q.mean);
-  out["standard_deviation"] = json_number(q.standard_deviation);
-  out["minimum"] = q.samples > 0 ? json_number(q.minimum) : Json(nullptr);
-  out["maximum"] = q.samples > 0 ? json_number(q.maximum) : Json(nullptr);
-  out["resolution"] = json_number(q.resolution);
-  out["distinct_values"] = q.distinct_values;
-  out["saturated"] = q.saturated;
-  out["longest_stuck"] = q.longest_stuck;
-  out["difference_kurtosis"] =
-      q.minimum < q.maximum ? json_number(q.difference_kurtosis) : Json(nullptr);
-  out["float32"] = q.float32;
-  out["float32_step"] = json_number(q.float32_step);
-  out["suggestions"] = texts(q.suggestions);
-  return out;
-}
-
-// Some facts stand twice: under the keys of `inspect` and under those of reports.
 Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities) {
-  const TimeBase& time = log.time;
-  Json out = {{"file", json_text(log.file)},
-              {"sha256", known_text(log.sha256)},
-              {"bytes", log.bytes},
-              {"log_format", log.format},
-              {"format", log.format},
-              {"rows", log.rows},
-              {"rows_used", log.rows_used},
-              {"rows_dropped", log.rows_dropped},
-              {"rows_outside", log.rows_outside},
-              {"samples", log.samples},
-              {"channels", Json::array()}};
+  DescribedRecording out{log, {}};
   for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i)
-    out["channels"].push_back(channel_json(log.channels[i], qualities[i]));
-  out["rate_hz"] = time.rate_hz > 0 ? json_number(time.rate_hz) : Json(nullptr);
-  out["jitter_s"] = json_number(time.jitter_s);
-  out["max_deviation_s"] = json_number(time.max_deviation_s);
-  out["gaps"] = time.gaps;
-  out["missing_samples"] = time.missing_samples;
-  out["time"] = time_json(time);
-  out["time_column"] = json_text(time.column);
-  out["time_unit"] = json_text(time.unit);
-  out["time_unit_guessed"] = time.unit_guessed;
-  out["rate_from_stamps"] = time.from_stamps;
-  out["start_ns"] = start_json(time);
-  out["repairs"] = Json::object();
-  for (const Warning& w : log.warnings.list()) out["repairs"][w.code] = w.count;
-  out["guesses"] = texts(log.guesses);
-  out["dialect"] = texts(log.dialect);
-  if (log.topics.empty()) return out;
-  out["topic"] = json_text(log.topic);
-  out["topics"] = Json::array();
-  for (const LogTopic& topic : log.topics) out["topics"].push_back(topic_json(topic));
-  return out;
+    out.channels.push_back({log.channels[i], qualities[i]});
+  return document_of(recording_fields(), out);
 }
 
 }  // namespace libchar

@@ -2,11 +2,12 @@
 // What a document says about the recordings it comes from: one description for every verb. Keys may
 // be added; none changes its meaning or goes.
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/fields.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/recording.hpp"
 
@@ -22,10 +23,22 @@ Json document_head(std::string_view format,
 /// Error(input) where it cannot be read.
 LogInfo document_info(const std::string& path);
 
+/// [{code, message, count, where}…]
+Json warnings_json(const Warnings& warnings);
+
+struct DescribedChannel {
+  Channel channel;
+  ChannelQuality quality;
+};
 /// Name, unit and what the samples of a channel say about the instrument.
-Json channel_json(const Channel& channel, const ChannelQuality& quality);
+const Fields<DescribedChannel>& described_channel_fields();
 
 /// File, channels, time base and repairs; `qualities` has one element a channel of `log`.
 Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
+
+/// What schemas say of a head, of a recording, and of what stands beside a raw binary log.
+std::span<const Field> document_head_rows();
+std::span<const Field> recording_rows();
+std::span<const Field> sidecar_rows();
 
 }  // namespace libchar

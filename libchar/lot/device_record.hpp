@@ -14,6 +14,7 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/coefficient.hpp"
+#include "libchar/core/fields.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/lot/device_quantity.hpp"
 
@@ -81,6 +82,8 @@ std::string why_nothing_fitted(const DeviceRecord& record);
 /// The coefficient again, as far as the record holds it, in the unit that `factor` converts to.
 Coefficient coefficient_of(const RecordedValue& value, double factor = 1);
 
+/// What a line says, with its schema.
+const Fields<DeviceRecord>& device_record_fields();
 /// One line of JSON without its newline: {"format":"device-record",…}. Every number reads back to the same double.
 std::string device_record_text(const DeviceRecord& record);
 /// Keys that are not known are left alone. Throws Error(input) with `path`, line, column and key.

@@ -19,36 +19,6 @@ constexpr const char* kFormat = "fusion";
 constexpr Word kInterpolations[] = {{"sinc"}, {"cubic"}};
 constexpr Word kTrends[] = {{"none"}, {"mean"}, {"line"}};
 
-// A list of maps, each with rows of its own.
-template <class Part>
-void read_list_of(const MapReader& at,
-                  std::string_view key,
-                  const Fields<Part>& rows,
-                  std::vector<Part>& out) {
-  if (!at.has(key)) return;
-  const auto& list = at.list(key);
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const MapReader one(
-        list[i], at.file(), fmt::format("{}[{}]", at.path_of(key), i), keys_of(rows));
-    read_fields(rows, one, out.emplace_back());
-  }
-}
-
-template <class Part>
-void write_list_of(const Field& row,
-                   const Fields<Part>& rows,
-                   const std::vector<Part>& parts,
-                   std::vector<Entry>& out,
-                   Entry::Form form = Entry::Form::block) {
-  if (parts.empty()) return;
-  std::vector<Entry> below;
-  below.reserve(parts.size());
-  for (const Part& part : parts) below.push_back(part_entry("", entries_of(rows, part), form));
-  Entry entry = part_entry(std::string(row.key), std::move(below), Entry::Form::list);
-  entry.comment = row.text.comment;
-  out.push_back(std::move(entry));
-}
-
 const Fields<LearntInput>& input_fields() {
   static const Fields<LearntInput> rows = {
       field<&LearntInput::name>("name", {.meaning = "of the estimate's column", .required = true}),
@@ -138,33 +108,6 @@ void write_learnt(const Field& row, const LearntAlgorithm& algorithm, std::vecto
   for (const fusion::LearntNumbers& numbers : algorithm.learnt)
     below.push_back({numbers.name, numbers.values});
   out.push_back(part_entry(std::string(row.key), std::move(below)));
-}
-
-// ---- lists ----
-
-void read_inputs(const MapReader& at, std::string_view key, LearntFusion& f) {
-  read_list_of(at, key, input_fields(), f.inputs);
-}
-void write_inputs(const Field& row, const LearntFusion& f, std::vector<Entry>& out) {
-  write_list_of(row, input_fields(), f.inputs, out, Entry::Form::flow);
-}
-void read_sources(const MapReader& at, std::string_view key, LearntFusion& f) {
-  read_list_of(at, key, source_fields(), f.learnt_from);
-}
-void write_sources(const Field& row, const LearntFusion& f, std::vector<Entry>& out) {
-  write_list_of(row, source_fields(), f.learnt_from, out, Entry::Form::flow);
-}
-void read_sensors(const MapReader& at, std::string_view key, LearntFusion& f) {
-  read_list_of(at, key, fusion_sensor_fields(), f.sensors);
-}
-void write_sensors(const Field& row, const LearntFusion& f, std::vector<Entry>& out) {
-  write_list_of(row, fusion_sensor_fields(), f.sensors, out);
-}
-void read_algorithms(const MapReader& at, std::string_view key, LearntFusion& f) {
-  read_list_of(at, key, fusion_algorithm_fields(), f.algorithms);
-}
-void write_algorithms(const Field& row, const LearntFusion& f, std::vector<Entry>& out) {
-  write_list_of(row, fusion_algorithm_fields(), f.algorithms, out);
 }
 
 // A file that was cut off can still be YAML.
@@ -263,8 +206,11 @@ const Fields<LearntFusion>& head_rows() {
       constant<LearntFusion>("version", std::uint64_t{1}),
       tool_row<LearntFusion>(),
       field<&LearntFusion::name>("name", {.meaning = "of the scene"}),
-      custom<LearntFusion, read_sources, write_sources>(
-          "learnt_from", "list", {.meaning = "files it was learnt from: their path and SHA-256"}),
+      list_of<&LearntFusion::learnt_from>(
+          "learnt_from",
+          source_fields(),
+          {.meaning = "files it was learnt from: their path and SHA-256",
+           .form = Entry::Form::flow}),
       field<&LearntFusion::rate_hz>("rate_hz",
                                     {.unit = "Hz",
                                      .range = kPositive,
@@ -319,8 +265,11 @@ const Fields<LearntFusion>& instant_rows() {
 
 const Fields<LearntFusion>& content_rows() {
   static const Fields<LearntFusion> rows = {
-      custom<LearntFusion, read_inputs, write_inputs>(
-          "inputs", "list", {.meaning = "what is estimated: `name`, `unit`", .required = true}),
+      list_of<&LearntFusion::inputs>("inputs",
+                                     input_fields(),
+                                     {.meaning = "what is estimated: `name`, `unit`",
+                                      .required = true,
+                                      .form = Entry::Form::flow}),
       field<&LearntFusion::interpolation>("interpolation",
                                           {.words = kInterpolations,
                                            .meaning = "of the alignment",
@@ -328,12 +277,14 @@ const Fields<LearntFusion>& content_rows() {
       part<&LearntFusion::tilt>("tilt",
                                 learnt_tilt_fields(),
                                 {.meaning = "sensors of a tilt", .form = Entry::Form::flow}),
-      custom<LearntFusion, read_sensors, write_sensors>(
-          "sensors", "list", {.meaning = "in their order (below)", .required = true}),
+      list_of<&LearntFusion::sensors>("sensors",
+                                      fusion_sensor_fields(),
+                                      {.meaning = "in their order (below)", .required = true}),
       field<&LearntFusion::recommended>(
           "recommended", {.meaning = "label of the best method", .otherwise = "none"}),
-      custom<LearntFusion, read_algorithms, write_algorithms>(
-          "algorithms", "list", {.meaning = "that ran (below)", .required = true}),
+      list_of<&LearntFusion::algorithms>("algorithms",
+                                         fusion_algorithm_fields(),
+                                         {.meaning = "that ran (below)", .required = true}),
       custom<LearntFusion, read_complete, write_complete>(
           "complete", "true", {.meaning = "the last line: a file without it is cut off"}),
   };

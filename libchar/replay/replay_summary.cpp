@@ -17,17 +17,6 @@
 namespace libchar {
 namespace {
 
-// A report grows keys from version to version of the program: those we do not know are left alone.
-MapReader open_map(const Document& node, const std::string& file, const std::string& path) {
-  std::vector<std::string> keys;
-  for (const DocumentEntry& entry : node.map) keys.push_back(entry.key);
-  return {node, file, path, std::move(keys)};
-}
-
-MapReader open_map(const MapReader& map, const std::string& key) {
-  return open_map(map.require(key), map.file(), map.path_of(key));
-}
-
 // A number that may be null, but whose key must be there.
 double number_or_none(const MapReader& map,
                       const std::string& key,
@@ -46,14 +35,6 @@ Interval interval_or_none(const MapReader& map, const std::string& key) {
 bool flag(const MapReader& map, const std::string& key) {
   map.require(key);
   return map.flag_or(key, false);
-}
-
-// Calls `read(map)` for each map of a list.
-template <class Read>
-void each(const MapReader& map, const std::string& key, const Read& read) {
-  std::size_t i = 0;
-  for (const Document& element : map.list(key))
-    read(open_map(element, map.file(), fmt::format("{}[{}]", map.path_of(key), i++)));
 }
 
 TimeWindow window(const MapReader& map) {
@@ -76,7 +57,7 @@ void read_reference(const MapReader& map, ReplaySummary& out) {
   if (map.node().find("reference") == nullptr) map.require("reference");
   out.has_reference = map.has("reference");
   if (!out.has_reference) return;
-  const MapReader reference = open_map(map, "reference");
+  const MapReader reference = map.map("reference");
   out.reference_use = reference.text("use");
   out.lag_s = number_or_none(reference, "lag_s");
   out.lag_estimated = flag(reference, "lag_estimated");
@@ -100,7 +81,7 @@ AlgorithmSummary algorithm(const MapReader& map) {
   out.rmse = number_or_none(map, "rmse", kNotNegative);
   out.rmse_ci95 = interval_or_none(map, "rmse_ci95");
   if (map.has("without_reference")) {
-    const MapReader blind = open_map(map, "without_reference");
+    const MapReader blind = map.map("without_reference");
     // Reports of earlier versions are ranked by the root of the mean over the sensors.
     const bool geometric = blind.has("predictive_rms");
     out.rmse =
@@ -111,7 +92,7 @@ AlgorithmSummary algorithm(const MapReader& map) {
   out.ns_per_sample = map.number_or("ns_per_sample", kNone, kNotNegative);
   out.peak_bytes = map.number_or("peak_bytes", kNone, kNotNegative);
   if (map.has("options")) {
-    const MapReader options = open_map(map, "options");
+    const MapReader options = map.map("options");
     for (const DocumentEntry& entry : options.node().map)
       out.options.emplace_back(entry.key, options.number_or(entry.key, kNone));
   }
@@ -136,37 +117,34 @@ void check_report(const Document& document, const std::string& file) {
 
 ReplaySummary read(const Document& document, const std::string& file) {
   check_report(document, file);
-  const MapReader map = open_map(document, file, "");
+  const MapReader map(document, file, "");
   ReplaySummary out;
   out.file = file;
-  if (map.has("tool")) out.program = open_map(map, "tool").text_or("version", "");
-  read_scene(open_map(map, "scene"), out);
-  each(map, "input", [&](const MapReader& one) {
+  if (map.has("tool")) out.program = map.map("tool").text_or("version", "");
+  read_scene(map.map("scene"), out);
+  for (const MapReader& one : map.maps("input"))
     out.files.push_back({one.text("path"), one.text_or("sha256", "")});
-  });
   out.rate_hz = map.number("rate_hz", kPositive);
   out.instants = map.count("instants");
-  if (map.has("learning")) out.learning = window(open_map(map, "learning"));
-  out.evaluation = window(open_map(map, "evaluation"));
+  if (map.has("learning")) out.learning = window(map.map("learning"));
+  out.evaluation = window(map.map("evaluation"));
   read_reference(map, out);
-  each(map, "inputs", [&](const MapReader& one) {
+  for (const MapReader& one : map.maps("inputs"))
     out.inputs.push_back({one.text("name"), one.text_or("unit", "")});
-  });
-  each(map, "sensors", [&](const MapReader& one) { out.sensors.push_back(sensor(one)); });
-  each(map, "faults", [&](const MapReader& one) {
+  for (const MapReader& one : map.maps("sensors")) out.sensors.push_back(sensor(one));
+  for (const MapReader& one : map.maps("faults"))
     out.faults.push_back({one.text("sensor"),
                           one.text("kind"),
                           one.number_or("value", kNone),
                           one.number_or("from_s", kNone),
                           one.number_or("to_s", kNone)});
-  });
   out.best = map.text_or("best", "");
   std::set<std::string> labels;
-  each(map, "algorithms", [&](const MapReader& one) {
+  for (const MapReader& one : map.maps("algorithms")) {
     out.algorithms.push_back(algorithm(one));
     if (!labels.insert(out.algorithms.back().label).second)
       one.refuse("label", "stands twice in this report");
-  });
+  }
   return out;
 }
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libchar/characterize/curve_document.hpp"
 #include "libchar/core/csv_cell.hpp"
 #include "libchar/core/decimal.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {
 
@@ -47,19 +47,16 @@ std::vector<DeviationType> types_of(const std::vector<AllanCurve>& curves) {
 }  // namespace
 
 Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
-  Json out = json_frame("allan");
   const std::vector<DeviationType> types = types_of(curves);
-  out["type"] = name_of(types.empty() ? DeviationType::oadev : types[0]);
-  if (types.size() > 1) {
-    out["types"] = Json::array();
-    for (const DeviationType type : types) out["types"].push_back(name_of(type));
-  }
-  out["channels"] = Json::array();
+  AllanDocument out;
+  out.type = name_of(types.empty() ? DeviationType::oadev : types[0]);
+  if (types.size() > 1)
+    for (const DeviationType type : types) out.types.emplace_back(name_of(type));
   for (std::size_t i = 0; i < std::min(channels.size(), curves.size()); ++i) {
-    out["channels"].push_back(allan_channel_json(channels[i], curves[i], nullptr));
-    if (types.size() > 1) out["channels"].back()["type"] = name_of(curves[i].type);
+    out.channels.push_back(allan_of_channel(channels[i], curves[i]));
+    if (types.size() > 1) out.channels.back().type = name_of(curves[i].type);
   }
-  return out;
+  return document_of(allan_fields(), out);
 }
 
 }  // namespace libchar

@@ -8,84 +8,44 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/characterize/curve_document.hpp"
 #include "libchar/characterize/verification.hpp"
 #include "libchar/core/decimal.hpp"
+#include "libchar/core/not_known.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
-#include "libchar/report/detail/limits_pieces.hpp"
-#include "libchar/report/detail/verification_json.hpp"
+#include "libchar/report/detail/report_rows.hpp"
 
 namespace libchar {
 namespace {
 
-Json read_off_json(const std::vector<ReadOff>& points) {
-  Json out = Json::array();
-  for (const ReadOff& p : points) {
-    out.push_back({{"term", kTermNames[static_cast<std::size_t>(p.term)].key},
-                   {"tau_s", p.tau_s},
-                   {"deviation", p.deviation},
-                   {"label", p.label}});
-  }
+DerivedNumbers derived_of(const ChannelView& view) {
+  DerivedNumbers out;
+  out.per_sample_sd = view.per_sample_sd;
+  out.noise_density_one_sided = view.noise_density_one_sided;
+  if (view.allan_minimum != nullptr) out.allan_minimum = *view.allan_minimum;
+  out.read_off_points = view.read_off;
+  out.plain_from_s = view.plain_from_s;
   return out;
 }
 
-// Numbers that follow from the coefficients and that one asks for.
-Json derived_json(const ChannelView& view) {
-  Json out = Json::object();
-  if (view.per_sample_sd) {
-    out["per_sample_sd"] = *view.per_sample_sd;
-    out["noise_density_one_sided"] = *view.noise_density_one_sided;
-  }
-  if (const AllanPoint* lowest = view.allan_minimum) {
-    out["allan_minimum"] = {{"deviation", lowest->deviation}, {"tau_s", lowest->tau_s}};
-  }
-  out["read_off_points"] = read_off_json(view.read_off);
-  out["plain_from_s"] = view.plain_from_s;
-  return out;
-}
-
-Json digital_json(const DigitalFaults& faults) {
-  Json out = {{"rails", Json::array()}, {"held", nullptr}, {"staircase", nullptr}};
-  for (const Rail& rail : faults.rails)
-    out["rails"].push_back({{"value", rail.value}, {"high", rail.high}, {"share", rail.share}});
-  if (faults.held)
-    out["held"] = {{"times", faults.held->times}, {"sensor_rate_hz", faults.held->sensor_rate_hz}};
-  if (faults.staircase)
-    out["staircase"] = {{"step", faults.staircase->step},
-                        {"noise", faults.staircase->noise},
-                        {"bounded", faults.staircase->bounded}};
-  return out;
-}
-
-Json quality_json(const ChannelResult& channel) {
-  Json out = channel_json(channel.channel, channel.quality);
-  out["digital"] = digital_json(channel.digital);
-  out["lines"] = Json::array();
-  for (const SpectralLine& line : channel.lines) {
-    out["lines"].push_back({{"frequency_hz", line.frequency_hz},
-                            {"amplitude", line.amplitude},
-                            {"excess", line.excess},
-                            {"width_hz", line.width_hz}});
-  }
-  out["problems"] = Json::array();
-  for (const std::string& problem : channel.problems) out["problems"].push_back(json_text(problem));
-  return out;
+QualityOfChannel quality_of(const ChannelResult& c) {
+  return {{c.channel, c.quality}, c.digital, c.lines, c.problems};
 }
 
 // Enough digits for a picture.
-Json for_drawing(const std::vector<double>& values, int digits) {
-  Json out = Json::array();
+std::vector<double> for_drawing(const std::vector<double>& values, int digits) {
+  std::vector<double> out;
   for (const double value : values)
-    out.push_back(std::isfinite(value) ? Json(rounded(value, digits)) : Json(nullptr));
+    out.push_back(std::isfinite(value) ? rounded(value, digits) : value);
   return out;
 }
 
-// The record in blocks, with what was found in it.
-Json trace_json(const ChannelView& view) {
+TraceOfChannel trace_of(const ChannelView& view) {
   const ChannelResult& channel = *view.result;
-  const Trace& trace = channel.trace;
+  TraceOfChannel out{channel.channel.name, channel.trace_unit, channel.trace, view.marks};
+  Trace& trace = out.trace;
   double least = INFINITY, most = -INFINITY;
   for (std::size_t i = 0; i < trace.low.size(); ++i) {
     if (trace.low[i] < least) least = trace.low[i];
@@ -93,32 +53,28 @@ Json trace_json(const ChannelView& view) {
   }
   const double largest = std::max(std::fabs(least), std::fabs(most));
   const double digits = most > least ? std::ceil(std::log10(largest / (most - least))) + 4 : 4;
-  Json out = {{"name", json_text(channel.channel.name)},
-              {"unit", json_text(channel.trace_unit)},
-              {"samples_per_block", trace.block}};
   const int enough = std::isfinite(digits) ? static_cast<int>(std::clamp(digits, 4.0, 17.0)) : 17;
-  out["low"] = for_drawing(trace.low, enough);
-  out["high"] = for_drawing(trace.high, enough);
-  out["missing"] = Json::array();
-  for (std::size_t i = 0; i < trace.missing.size(); ++i)
-    if (trace.missing[i] > 0) out["missing"].push_back({i, trace.missing[i]});
-  out["marks"] = Json::array();
-  for (const TraceMark& mark : view.marks)
-    out["marks"].push_back({{"kind", mark.kind},
-                            {"from_s", mark.from_s},
-                            {"to_s", mark.to_s},
-                            {"label", json_text(mark.label)}});
+  trace.low = for_drawing(trace.low, enough);
+  trace.high = for_drawing(trace.high, enough);
   return out;
 }
 
-Json summary_json(const ChannelView& view) {
-  Json spoils = Json::array();
+SummaryOfChannel summary_of(const ChannelView& view) {
+  SummaryOfChannel out{view.result->channel.name, view.judgement.rating, view.summary, {}};
   for (const Objection& objection : view.judgement.objections)
-    spoils.push_back(json_text(objection.phrase));
-  return {{"name", json_text(view.result->channel.name)},
-          {"rating", name_of(view.judgement.rating)},
-          {"sentence", json_text(view.summary)},
-          {"spoils", std::move(spoils)}};
+    out.spoils.push_back(objection.phrase);
+  return out;
+}
+
+Json verification_json(const ChannelView& view) {
+  const ChannelResult& c = *view.result;
+  if (c.verification == nullptr) return nullptr;
+  return document_of(
+      verification_fields(),
+      {c.channel.name,
+       *c.verification,
+       allan_of_channel(c.channel, c.verification->allan),
+       spectrum_of_channel(c.channel, c.verification->spectrum, view.verification_ci95)});
 }
 
 // A channel that could not be fitted keeps its place: null, with the objection in "problems".
@@ -127,29 +83,24 @@ Json fit_or_reason(const ChannelView& view) {
   const std::string name = json_text(channel.channel.name), unit = json_text(channel.channel.unit);
   if (!channel.fit) return no_fit_json(name, unit);
   Json out = noise_fit_json(name, unit, *channel.fit, true);
-  out["derived"] = derived_json(view);
+  out["derived"] = document_of(derived_fields(), derived_of(view));
   return out;
 }
 
-Json noise_types_json(const std::vector<NoiseType>& types) {
-  Json list = Json::array();
-  for (const NoiseType& type : types)
-    list.push_back({{"tau_s", json_number(type.tau_s)},
-                    {"alpha", type.alpha},
-                    {"estimate", json_number(type.estimate)},
-                    {"name", noise_type_name(type.alpha)}});
-  return list;
-}
-
-Json allan_json_of(const ChannelView& view) {
+AllanOfChannel allan_of(const ChannelView& view) {
   const ChannelResult& c = *view.result;
-  Json out =
-      allan_channel_json(c.channel, c.allan, view.allan_model ? &*view.allan_model : nullptr);
-  if (!c.noise_types.empty()) out["noise_types"] = noise_types_json(c.noise_types);
-  if (view.data_sheet.empty()) return out;
-  Json& line = out["data_sheet"] = Json::array();
-  for (const auto& value : view.data_sheet) line.push_back(json_number(value));
+  AllanOfChannel out =
+      allan_of_channel(c.channel, c.allan, view.allan_model ? &*view.allan_model : nullptr);
+  out.noise_types = c.noise_types;
+  for (const auto& value : view.data_sheet) out.data_sheet.push_back(value.value_or(kNone));
   return out;
+}
+
+SpectrumOfChannel spectrum_of(const ChannelView& view) {
+  return spectrum_of_channel(view.result->channel,
+                             view.result->spectrum,
+                             view.spectrum_ci95,
+                             view.spectrum_model ? &*view.spectrum_model : nullptr);
 }
 
 }  // namespace
@@ -160,7 +111,8 @@ Json json_without_times(const CharacterizationView& view) {
   out["config"] = json_of(result.settings);
   out["verdict"] = json_text(view.verdict);
   out["summary"] = {{"rating", name_of(view.rating)}, {"channels", Json::array()}};
-  for (const ChannelView& v : view.channels) out["summary"]["channels"].push_back(summary_json(v));
+  for (const ChannelView& v : view.channels)
+    out["summary"]["channels"].push_back(document_of(summary_fields(), summary_of(v)));
 
   std::vector<ChannelQuality> qualities;
   LogInfo log = result.log;
@@ -170,43 +122,36 @@ Json json_without_times(const CharacterizationView& view) {
     qualities.push_back(c.quality);
   }
   out["recording"] = recording_json(log, qualities);
-  if (result.still)
-    out["still"] = {{"from_s", result.still->from_s},
-                    {"to_s", result.still->to_s},
-                    {"found", result.still->found},
-                    {"whole", result.still->whole},
-                    {"sentence", json_text(result.still->sentence)}};
+  if (result.still) out["still"] = document_of(still_fields(), *result.still);
 
-  Json allan = json_frame("allan"), spectrum = json_frame("spectrum"),
-       fit = noise_fit_document(Json::array()), quality = Json::object();
-  const bool any = !result.channels.empty();
-  allan["type"] = name_of(any ? result.channels[0].allan.type : DeviationType::oadev);
-  spectrum["sides"] = name_of(any ? result.channels[0].spectrum.sides : Sides::one);
-  spectrum["scaling"] = name_of(any ? result.channels[0].spectrum.scaling : Scaling::psd);
-  for (Json* part : {&allan, &spectrum, &quality}) (*part)["channels"] = Json::array();
+  AllanDocument allan;
+  SpectrumDocument spectrum;
+  Json fit = noise_fit_document(Json::array()), quality = {{"channels", Json::array()}};
+  const ChannelResult none, &first = result.channels.empty() ? none : result.channels[0];
+  allan.type = name_of(first.allan.type);
+  spectrum.sides = name_of(first.spectrum.sides);
+  spectrum.scaling = name_of(first.spectrum.scaling);
   for (const ChannelView& v : view.channels) {
-    const ChannelResult& c = *v.result;
-    allan["channels"].push_back(allan_json_of(v));
-    spectrum["channels"].push_back(spectrum_channel_json(
-        c.channel, c.spectrum, v.spectrum_model ? &*v.spectrum_model : nullptr, v.spectrum_ci95));
+    allan.channels.push_back(allan_of(v));
+    spectrum.channels.push_back(spectrum_of(v));
     fit["channels"].push_back(fit_or_reason(v));
-    quality["channels"].push_back(quality_json(c));
+    quality["channels"].push_back(document_of(quality_fields(), quality_of(*v.result)));
   }
-  out["allan"] = std::move(allan);
-  out["spectrum"] = std::move(spectrum);
+  out["allan"] = document_of(allan_fields(), allan);
+  out["spectrum"] = document_of(spectrum_fields(), spectrum);
   out["fit"] = std::move(fit);
   out["quality"] = std::move(quality);
   out["trace"] = {{"rate_hz", json_number(result.log.time.rate_hz)}, {"channels", Json::array()}};
-  for (const ChannelView& v : view.channels) out["trace"]["channels"].push_back(trace_json(v));
+  for (const ChannelView& v : view.channels)
+    out["trace"]["channels"].push_back(document_of(trace_fields(), trace_of(v)));
   if (std::any_of(result.channels.begin(), result.channels.end(), [](const ChannelResult& c) {
         return c.verification != nullptr;
       })) {
     out["verification"] = {{"channels", Json::array()}};
     for (const ChannelView& v : view.channels)
-      out["verification"]["channels"].push_back(v.result->verification ? verification_json(v)
-                                                                       : Json(nullptr));
+      out["verification"]["channels"].push_back(verification_json(v));
   }
-  if (result.limits) out["limits"] = limits_json(*result.limits);
+  if (result.limits) out["limits"] = document_of(limit_report_fields(), *result.limits);
   return out;
 }
 

@@ -21,6 +21,7 @@
 #include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/limits_pieces.hpp"
 #include "libchar/report/detail/many_pieces.hpp"
+#include "libchar/report/detail/report_rows.hpp"
 #include "libchar/report/detail/svg_curves.hpp"
 #include "libchar/report/fit_text.hpp"
 #include "libchar/report/limits_text.hpp"
@@ -191,7 +192,7 @@ Json runs_json(const RunsReport& report) {
   out["fit"] = noise_fit_document(std::move(fits));
   out["consistency"] = {{"channels", std::move(channels)}};
   out["problems"] = std::move(problems);
-  if (report.limits != nullptr) out["limits"] = limits_json(*report.limits);
+  if (report.limits != nullptr) out["limits"] = document_of(limit_report_fields(), *report.limits);
   return out;
 }
 

@@ -4,29 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/characterize/curve_document.hpp"
 #include "libchar/core/csv_cell.hpp"
 #include "libchar/core/decimal.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {
-namespace {
-
-Json spectrum_and_lines_json(const ChannelSpectrum& c, bool lines) {
-  Json out =
-      spectrum_channel_json(c.channel, c.spectrum, nullptr, spectrum_intervals(c.spectrum, 0.95));
-  if (!lines) return out;
-  out["lines"] = Json::array();
-  for (const SpectralLine& line : c.lines)
-    out["lines"].push_back({{"frequency_hz", line.frequency_hz},
-                            {"amplitude", line.amplitude},
-                            {"excess", line.excess},
-                            {"width_hz", line.width_hz}});
-  return out;
-}
-
-}  // namespace
-
 std::string spectra_csv(const LogSpectra& spectra) {
   std::string text = "frequency_hz";
   for (const ChannelSpectrum& c : spectra.channels)
@@ -66,8 +49,13 @@ Json spectra_json(const LogSpectra& spectra, const LogSpectraOptions& options) {
   document["detrend"] = name_of(options.spectrum.detrend);
   document["rate_hz"] = spectra.log.time.rate_hz;
   document["channels"] = Json::array();
-  for (const ChannelSpectrum& c : spectra.channels)
-    document["channels"].push_back(spectrum_and_lines_json(c, options.lines));
+  for (const ChannelSpectrum& c : spectra.channels) {
+    SpectrumOfChannel one =
+        spectrum_of_channel(c.channel, c.spectrum, spectrum_intervals(c.spectrum, 0.95));
+    one.with_lines = options.lines;
+    one.lines = c.lines;
+    document["channels"].push_back(document_of(spectrum_channel_fields(), one));
+  }
   return document;
 }
 

@@ -69,9 +69,10 @@ TEST_CASE(
       {{"help", "alan"}, "did you mean allan?"},
       {{"help", "allan", "psd"}, "one argument too many"},
       {{"--generate", "mann"}, "did you mean man?"},
-      {{"--generate"}, "expected one of man, bash, zsh, fish, json"},
+      {{"--generate"}, "expected one of man, bash, zsh, fish, json, schema"},
       {{"--generate", "man", "alan"}, "did you mean allan?"},
       {{"--generate", "bash", "allan"}, "one argument too many"},
+      {{"--generate", "schema", "alan"}, "did you mean allan?"},
       {{"inspect", "a.csv", "--color", "yes"}, "expected one of auto, always, never"}};
   for (const auto& [words, says] : slips) {
     const auto ran = test::run(words);

@@ -3,6 +3,7 @@
 #include "libchar/core/fields.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document.hpp"
@@ -158,4 +159,126 @@ TEST_CASE("fields: the table of a page has a row a key") {
   CHECK(markdown_table(lamp_fields()) ==
         "| key | value | meaning |\n|---|---|---|\n| `power_w` | W | at 230 V |\n| `colour` | red, "
         "green | of the light |\n");
+}
+
+namespace {
+
+struct Reading {
+  double time_s = 0;
+  double value = 0;
+  bool sure = true;
+  Interval ci95;
+  double weight = 1;
+  bool operator==(const Reading&) const = default;
+};
+
+struct Meter {
+  std::string name;
+  std::optional<double> offset;
+  std::vector<Reading> readings;
+  std::vector<Lamp> lamps;
+  std::optional<Lamp> spare;
+  std::vector<Interval> pauses_s;
+  int turns = 0;
+};
+
+bool has_weight(const Reading& reading) {
+  return reading.ci95.high > 0;
+}
+
+const Fields<Reading>& reading_rows() {
+  static const Fields<Reading> rows =
+      joined(always(Fields<Reading>{
+                 field<&Reading::time_s>("time_s"),
+                 field<&Reading::value>("value"),
+                 field<&Reading::sure>("sure"),
+                 field<&Reading::ci95>("ci95", {.known = when<has_weight>}),
+             }),
+             {field<&Reading::weight>("weight")});
+  return rows;
+}
+
+const Fields<Meter>& meter_fields() {
+  static const Fields<Meter> rows = always(Fields<Meter>{
+      field<&Meter::name>("name"),
+      constant<Meter>("unit", "{unit}"),
+      field<&Meter::offset>("offset"),
+      columns_of<&Meter::readings>("", reading_rows()),
+      list_of<&Meter::lamps>("lamps", always(lamp_fields())),
+      maybe_part<&Meter::spare>("spare", always(lamp_fields())),
+      field<&Meter::pauses_s>("pauses_s"),
+      field<&Meter::turns>("turns",
+                           {.written = Written::if_known,
+                            .known = when<[](const Meter& meter) { return meter.turns != 0; }>}),
+      computed<[](const Meter& meter) { return std::uint64_t{meter.lamps.size()}; }>("count"),
+  });
+  return rows;
+}
+
+Meter read_meter(const std::string& text) {
+  const Document document = parse_document(text, "m.json");
+  Meter meter;
+  read_fields(meter_fields(), MapReader(document, "m.json", ""), meter);
+  return meter;
+}
+
+}  // namespace
+
+TEST_CASE("fields: lists, columns and parts that need not be there read back to the same bits") {
+  Meter meter;
+  meter.name = "m";
+  meter.readings = {{0.1, 1.0 / 3, true, {0.25, INFINITY}, 1}, {0.2, NAN, false, {0, 0}, 1}};
+  meter.lamps = {{7, Colour::green}, {}};
+  meter.pauses_s = {{1, 2}, {NAN, NAN}};
+  const Json json = json_of(entries_of(meter_fields(), meter, {{"unit", "deg"}}));
+  CHECK(json.dump() ==
+        R"({"name":"m","unit":"deg","offset":null,"time_s":[0.1,0.2],)"
+        R"("value":[0.3333333333333333,null],"sure":[true,false],"ci95":[[0.25,null],null],)"
+        R"("lamps":[{"power_w":7.0,"colour":"green"},{"power_w":5.0,"colour":"red"}],)"
+        R"("spare":null,"pauses_s":[[1.0,2.0],null],"count":2})");
+  const Meter back = read_meter(dump_json(json));
+  CHECK(back.readings[0] == meter.readings[0]);
+  CHECK(std::isnan(back.readings[1].value));
+  CHECK(back.readings[1].ci95 == Interval{});
+  CHECK(back.lamps == meter.lamps);
+  CHECK_FALSE(back.spare);
+  CHECK(back.pauses_s[0] == meter.pauses_s[0]);
+  meter.spare = Lamp{9, Colour::red};
+  meter.readings[1].weight = 2;
+  meter.turns = -3;
+  const Json more = document_of(meter_fields(), meter);
+  CHECK(more["weight"].dump() == "[1.0,2.0]");
+  CHECK(read_meter(dump_json(more)).spare == meter.spare);
+  CHECK(read_meter(dump_json(more)).turns == -3);
+}
+
+TEST_CASE("fields: columns of different lengths and other values are refused with their place") {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      read_meter(text);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(refusal(R"({"name": "m", "a key of a later version": {"a": 1}})") == "accepted");
+  CHECK(refusal("{\"time_s\": [1, 2],\n \"value\": [1]}")
+            .starts_with("m.json:2:11: error E0982: value: 1 values, 2 expected"));
+  CHECK(refusal(R"({"time_s": [1, "x"]})").find("a number was expected") != std::string::npos);
+  CHECK(refusal(R"({"pauses_s": [[2, 1]]})").find("E0543") != std::string::npos);
+}
+
+TEST_CASE("fields: the schema says types, words and what is always there") {
+  const Json schema = schema_of(meter_fields().rows);
+  CHECK(
+      schema["required"].dump() ==
+      R"(["name","unit","offset","time_s","value","sure","ci95","lamps","spare","pauses_s","count"])");
+  CHECK(schema["properties"]["unit"].dump() == R"({"type":"string"})");
+  CHECK(schema["properties"]["sure"].dump() == R"({"type":"array","items":{"type":"boolean"}})");
+  CHECK(schema["properties"]["spare"]["type"].dump() == R"(["object","null"])");
+  CHECK(schema["properties"]["lamps"]["items"]["properties"]["colour"]["enum"].dump() ==
+        R"(["red","green"])");
+  CHECK(schema["properties"]["lamps"]["items"]["properties"]["power_w"]["description"] ==
+        "at 230 V, in W");
+  CHECK(schema["properties"]["turns"].dump() == R"({"type":"integer"})");
 }

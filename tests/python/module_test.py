@@ -64,7 +64,7 @@ class SaysWhatTheProgramSays(unittest.TestCase):
         for spectrum, channel in zip(libchar.psd(IMU, segment=4096, window="flat_top", sides="two"), told):
             self.assertEqual(spectrum.frequency_hz.tolist(), channel["frequency_hz"])
             self.assertEqual(spectrum.value.tolist(), channel["value"])
-            self.assertEqual(np.stack([spectrum.low95, spectrum.high95], axis=1).tolist(), channel["ci95"])
+            self.assertEqual(spectrum.ci95.tolist(), channel["ci95"])
 
     def test_fit(self):
         told = program("fit", IMU)["channels"]

@@ -349,12 +349,11 @@ py::list psd(const py::object& source, const py::dict& reading, const py::dict& 
   py::list out;
   for (std::size_t k = 0; k < spectra.channels.size(); ++k) {
     ChannelSpectrum& c = spectra.channels[k];
-    std::vector<double> low, high;
-    low.reserve(intervals[k].size());
-    high.reserve(intervals[k].size());
+    std::vector<double> ends;
+    ends.reserve(2 * intervals[k].size());
     for (const std::optional<Interval>& interval : intervals[k]) {
-      low.push_back(interval ? interval->low : kMissing);
-      high.push_back(interval ? interval->high : kMissing);
+      ends.push_back(interval ? interval->low : kMissing);
+      ends.push_back(interval ? interval->high : kMissing);
     }
     py::dict one;
     one["name"] = c.channel.name;
@@ -368,8 +367,7 @@ py::list psd(const py::object& source, const py::dict& reading, const py::dict& 
     one["frequency_hz"] = to_array(std::move(c.spectrum.frequency_hz));
     one["value"] = to_array(std::move(c.spectrum.value));
     one["dof"] = to_array(std::move(c.spectrum.dof));
-    one["low95"] = to_array(std::move(low));
-    one["high95"] = to_array(std::move(high));
+    one["ci95"] = to_array(std::move(ends)).attr("reshape")(-1, 2);
     one["notes"] = spectra.notes;
     out.append(one);
   }

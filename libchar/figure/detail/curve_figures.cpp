@@ -204,7 +204,7 @@ FigureSeries line_series(const std::string& name,
 }
 
 void add_terms(Chart& figure, const SourceCurve& c) {
-  for (const SourceLine& line : c.lines) {
+  for (const Asymptote& line : c.lines) {
     figure.series.push_back(
         line_series(term_words(line.term),
                     {line.x.begin(), line.x.end()},
@@ -410,9 +410,7 @@ Chart residuals_figure(std::span<const FigureSource> sources, const FigureOption
       }
   const double top = std::min(kLargest, std::max(4.0, std::ceil(1.05 * largest)));
   x.pad(1.2);
-  out.x = {.title = chosen[0].first->over_tau ? "Averaging time τ [s]" : "Frequency [Hz]",
-           .log = true,
-           .rows = {}};
+  out.x = {.title = "Frequency [Hz]", .log = true, .rows = {}};
   out.y = {.title = "Residual [standard deviations]", .low = -top, .high = top, .rows = {}};
   set_ends(out.x, x, options.x_range);
   if (options.y_range) {

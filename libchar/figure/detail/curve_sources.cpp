@@ -7,13 +7,14 @@
 #include <limits>
 
 #include "libchar/allan/deviation_types.hpp"
-#include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/curve_document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/readable.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/figure/detail/report_values.hpp"
 #include "libchar/fit/curve_table.hpp"
+#include "libchar/fit/fit_json.hpp"
 #include "libchar/log/text_table.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 
@@ -25,33 +26,11 @@ std::string statistic_of(const std::string& word) {
   return type ? std::string(deviation_row(*type).title) : word.empty() ? "Allan deviation" : word;
 }
 
-std::optional<Term> term_of(std::string_view key) {
-  for (std::size_t t = 0; t < kTerms; ++t)
-    if (kTermNames[t].key == key) return static_cast<Term>(t);
-  return std::nullopt;
-}
-
-std::vector<SourceLine> lines_of(const MapReader& channel) {
-  std::vector<SourceLine> out;
-  if (!channel.has("asymptotes")) return out;
-  const MapReader lines = open_report(channel, "asymptotes");
-  for (const DocumentEntry& entry : lines.node().map) {
-    const auto term = term_of(entry.key);
-    if (!term || entry.value.kind != Document::Kind::list || entry.value.list.size() != 2) continue;
-    SourceLine line{*term, {}, {}};
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto point = report_numbers(lines, entry.key, entry.value.list[i], 2);
-      line.x[i] = point[0];
-      line.y[i] = point[1];
-    }
-    out.push_back(line);
+void add_ends(SourceCurve& curve, const std::vector<Interval>& intervals) {
+  for (const Interval& ends : intervals) {
+    curve.low95.push_back(ends.low);
+    curve.high95.push_back(ends.high);
   }
-  return out;
-}
-
-void read_named(SourceCurve& out, const MapReader& channel) {
-  out.channel = channel.text_or("name", "");
-  out.unit = usual_figure_unit(channel.text_or("unit", ""));
 }
 
 std::string line_statistic(const std::string& kind) {
@@ -81,149 +60,133 @@ std::string mark_text(Term term, double value, const std::string& unit) {
 }
 
 void add_allan_curves(FigureSource& out, const MapReader& document) {
-  const std::string type = document.text_or("type", "");
-  for (const MapReader& channel : open_reports(document, "channels")) {
-    SourceCurve curve;
-    read_named(curve, channel);
-    curve.statistic = statistic_of(channel.text_or("type", type));
-    curve.value_unit = channel.has("value_unit")
-                           ? usual_figure_unit(channel.text_or("value_unit", ""))
-                           : curve.unit;
-    curve.x = report_numbers(channel, "tau_s");
-    const std::size_t n = curve.x.size();
-    if (n == 0) continue;
-    curve.y = report_numbers(channel, "deviation", channel.require("deviation"), n);
-    ReportIntervals in68 = report_intervals(channel, "ci68", n),
-                    in95 = report_intervals(channel, "ci95", n);
-    curve.low68 = std::move(in68.low);
-    curve.high68 = std::move(in68.high);
-    curve.low95 = std::move(in95.low);
-    curve.high95 = std::move(in95.high);
-    curve.model = report_numbers(channel, "model", n);
-    curve.data_sheet = report_numbers(channel, "data_sheet", n);
-    curve.unreliable = report_flags(channel, "reliable", n);
-    curve.unreliable.flip();
-    curve.lines = lines_of(channel);
+  const AllanDocument read = read_allan(document);
+  for (const AllanOfChannel& channel : read.channels) {
+    if (channel.curve.points.empty()) continue;
+    SourceCurve curve = source_curve(channel.name, channel.unit, channel.curve);
+    curve.statistic = statistic_of(channel.type.empty() ? read.type : channel.type);
+    curve.value_unit =
+        channel.value_unit.empty() ? curve.unit : usual_figure_unit(channel.value_unit);
+    curve.model = channel.predicted.model;
+    curve.lines = channel.predicted.asymptotes;
+    curve.data_sheet = channel.data_sheet;
     out.curves.push_back(std::move(curve));
   }
 }
 
 void add_spectra(FigureSource& out, const MapReader& document) {
-  const std::string sides = document.text_or("sides", "one"),
-                    scaling = document.text_or("scaling", "psd");
-  for (const MapReader& channel : open_reports(document, "channels")) {
+  const SpectrumDocument read = read_spectra(document);
+  const auto sides = find_enum<Sides>(read.sides);
+  const auto scaling = find_enum<Scaling>(read.scaling);
+  for (const SpectrumOfChannel& channel : read.channels) {
+    if (channel.spectrum.frequency_hz.empty()) continue;
     SourceCurve curve;
-    read_named(curve, channel);
+    curve.channel = channel.name;
+    curve.unit = usual_figure_unit(channel.unit);
     curve.is_allan = false;
-    const auto side = find_enum<Sides>(sides);
-    const auto scale = find_enum<Scaling>(scaling);
-    curve.statistic = side && scale ? spectrum_statistic(*side, *scale) : sides + " " + scaling;
-    curve.value_unit =
-        channel.text_or("value_unit", spectrum_unit(scale.value_or(Scaling::psd), curve.unit));
-    curve.x = report_numbers(channel, "frequency_hz");
-    const std::size_t n = curve.x.size();
-    if (n == 0) continue;
-    curve.y = report_numbers(channel, "value", channel.require("value"), n);
-    ReportIntervals in95 = report_intervals(channel, "ci95", n);
-    curve.low95 = std::move(in95.low);
-    curve.high95 = std::move(in95.high);
-    curve.model = report_numbers(channel, "model", n);
-    curve.lines = lines_of(channel);
+    curve.statistic =
+        sides && scaling ? spectrum_statistic(*sides, *scaling) : read.sides + " " + read.scaling;
+    curve.value_unit = channel.value_unit.empty()
+                           ? spectrum_unit(scaling.value_or(Scaling::psd), curve.unit)
+                           : channel.value_unit;
+    curve.x = channel.spectrum.frequency_hz;
+    curve.y = channel.spectrum.value;
+    add_ends(curve, channel.ci95);
+    curve.model = channel.predicted.model;
+    curve.lines = channel.predicted.asymptotes;
     out.curves.push_back(std::move(curve));
   }
 }
 
 void add_residuals(FigureSource& out, const MapReader& fit) {
-  for (const MapReader& channel : open_reports(fit, "channels")) {
-    if (!channel.has("residuals")) continue;
-    const MapReader residuals = open_report(channel, "residuals");
+  for (const MapReader& channel : fit.maps("channels")) {
+    NoiseFit read;
+    read_fields(fit_residual_fields(), channel, read);
+    if (read.residuals.empty()) continue;
     SourceResiduals one;
     one.channel = channel.text_or("name", "");
-    one.over_tau = channel.flag_or("of_curve", false);
-    one.x = report_numbers(residuals, "frequency_hz");
-    one.z = report_numbers(residuals, "z", one.x.size());
-    one.outside = report_flags(residuals, "inside", one.x.size());
-    one.outside.flip();
-    if (!one.x.empty() && !one.z.empty()) out.residuals.push_back(std::move(one));
+    for (const FitResidual& residual : read.residuals) {
+      one.x.push_back(residual.frequency_hz);
+      one.z.push_back(residual.z);
+      one.outside.push_back(!residual.inside);
+    }
+    out.residuals.push_back(std::move(one));
   }
 }
 
 namespace {
 
-void add_marks(SourceCurve& curve, const MapReader& channel) {
+void add_marks(SourceCurve& curve, const MapReader& channel, const NoiseFit& fit) {
   if (!channel.has("derived")) return;
-  const MapReader derived = open_report(channel, "derived");
-  if (const double plain = derived.number_or("plain_from_s", 0); plain > 0)
-    curve.left_out.push_back({0, plain});
-  if (!derived.has("read_off_points")) return;
-  for (const MapReader& point : open_reports(derived, "read_off_points")) {
-    const auto term = term_of(point.text_or("term", ""));
-    if (!term || !channel.has(kTermNames[static_cast<std::size_t>(*term)].key)) continue;
-    const MapReader coefficient =
-        open_report(channel, kTermNames[static_cast<std::size_t>(*term)].key);
-    const auto value = coefficient.maybe_number("value");
-    if (!value) continue;
-    curve.marks.push_back({*term,
-                           point.number("tau_s"),
-                           point.number("deviation"),
-                           mark_text(*term, *value, curve.unit)});
-  }
+  DerivedNumbers derived;
+  read_fields(derived_fields(), channel.map("derived"), derived);
+  if (derived.plain_from_s > 0) curve.left_out.push_back({0, derived.plain_from_s});
+  for (const ReadOff& point : derived.read_off_points)
+    if (const auto& value = fit[point.term].value)
+      curve.marks.push_back(
+          {point.term, point.tau_s, point.deviation, mark_text(point.term, *value, curve.unit)});
 }
 
-void add_band(SourceCurve& curve, const MapReader& channel) {
-  if (!channel.has("band")) return;
-  const MapReader band = open_report(channel, "band");
-  const ReportIntervals out = report_intervals(band, "left_out_hz", 0);
-  for (std::size_t i = 0; i < out.low.size(); ++i)
-    curve.left_out.push_back({out.low[i], out.high[i]});
-  const double top = band.number_or("top_hz", 0);
-  if (!band.flag_or("whole", true) && top > 0)
-    curve.left_out.push_back({top, std::numeric_limits<double>::infinity()});
+void add_band(SourceCurve& curve, const FitBand& band) {
+  for (const Interval& out : band.left_out_hz) curve.left_out.push_back(out);
+  if (!band.whole && band.top_hz > 0)
+    curve.left_out.push_back({band.top_hz, std::numeric_limits<double>::infinity()});
 }
 
 }  // namespace
 
 void add_fit_to_curves(FigureSource& out, const MapReader& fit) {
-  for (const MapReader& channel : open_reports(fit, "channels"))
-    for (SourceCurve& curve : out.curves)
-      if (curve.channel == channel.text_or("name", "")) {
-        if (curve.is_allan)
-          add_marks(curve, channel);
-        else
-          add_band(curve, channel);
-      }
+  for (const MapReader& channel : fit.maps("channels")) {
+    if (!channel.has("goodness")) continue;
+    NoiseFit read;
+    read_fields(noise_fit_fields(), channel, read);
+    for (SourceCurve& curve : out.curves) {
+      if (curve.channel != channel.text_or("name", "")) continue;
+      if (curve.is_allan)
+        add_marks(curve, channel, read);
+      else
+        add_band(curve, read.band);
+    }
+  }
 }
 
 void add_traces(FigureSource& out, const MapReader& trace) {
   const double rate_hz = trace.number_or("rate_hz", 1);
-  for (const MapReader& channel : open_reports(trace, "channels")) {
+  for (const MapReader& channel : trace.maps("channels")) {
+    TraceOfChannel read;
+    read_fields(trace_fields(), channel, read);
+    channel.list("high", read.trace.low.size());
+    if (read.trace.low.empty()) continue;
     SourceTrace one;
-    one.channel = channel.text_or("name", "");
-    one.unit = usual_figure_unit(channel.text_or("unit", ""));
-    one.block_s =
-        channel.number_or("samples_per_block", 1, kPositive) / (rate_hz > 0 ? rate_hz : 1);
-    one.low = report_numbers(channel, "low");
-    one.high = report_numbers(channel, "high", one.low.size());
-    if (channel.has("marks"))
-      for (const MapReader& mark : open_reports(channel, "marks"))
-        one.marks.push_back(
-            {mark.text_or("label", ""), mark.number("from_s"), mark.number("to_s")});
-    if (!one.low.empty() && !one.high.empty()) out.traces.push_back(std::move(one));
+    one.channel = read.name;
+    one.unit = usual_figure_unit(read.unit);
+    one.block_s = static_cast<double>(read.trace.block) / (rate_hz > 0 ? rate_hz : 1);
+    one.low = read.trace.low;
+    one.high = read.trace.high;
+    for (const TraceMark& mark : read.marks)
+      one.marks.push_back({mark.label, mark.from_s, mark.to_s});
+    out.traces.push_back(std::move(one));
   }
 }
 
 void add_simulated(FigureSource& out, const MapReader& verification) {
   for (const Document& node : verification.list("channels")) {
     if (node.kind != Document::Kind::map) continue;
-    const MapReader channel = open_report(node, verification.file(), "verification.channels");
+    VerificationOfChannel simulated;
+    read_fields(verification_fields(),
+                MapReader(node, verification.file(), "verification.channels"),
+                simulated);
     for (SourceCurve& curve : out.curves) {
-      if (curve.channel != channel.text_or("name", "")) continue;
-      const char* part = curve.is_allan ? "allan" : "spectrum";
-      if (!channel.has(part)) continue;
-      const MapReader simulated = open_report(channel, part);
-      curve.simulated_x = report_numbers(simulated, curve.is_allan ? "tau_s" : "frequency_hz");
-      curve.simulated_y = report_numbers(
-          simulated, curve.is_allan ? "deviation" : "value", curve.simulated_x.size());
+      if (curve.channel != simulated.name) continue;
+      if (!curve.is_allan) {
+        curve.simulated_x = simulated.spectrum.spectrum.frequency_hz;
+        curve.simulated_y = simulated.spectrum.spectrum.value;
+        continue;
+      }
+      for (const AllanPoint& p : simulated.allan.curve.points) {
+        curve.simulated_x.push_back(p.tau_s);
+        curve.simulated_y.push_back(p.deviation);
+      }
     }
   }
 }

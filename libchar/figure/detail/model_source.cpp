@@ -56,8 +56,7 @@ SourceCurve allan_of(const SensorModel& model, const NoiseFit& fit, double dt_s,
     out.x.push_back(tau);
     out.y.push_back(point.deviation);
   }
-  for (const Asymptote& line : allan_asymptotes(fit, grid))
-    out.lines.push_back({line.term, line.x, line.y});
+  out.lines = allan_asymptotes(fit, grid);
   for (const ReadOff& point : read_off_points(fit, grid))
     out.marks.push_back({point.term,
                          point.tau_s,
@@ -76,8 +75,7 @@ SourceCurve spectrum_of(const NoiseFit& fit, double dt_s, double end_s) {
     out.x.push_back(f);
     out.y.push_back(model_spectrum(fit, grid, f).value_or(kNone));
   }
-  for (const Asymptote& line : spectrum_asymptotes(fit, grid))
-    out.lines.push_back({line.term, line.x, line.y});
+  out.lines = spectrum_asymptotes(fit, grid);
   out.is_allan = false;
   out.statistic = spectrum_statistic(grid.sides, grid.scaling);
   return out;

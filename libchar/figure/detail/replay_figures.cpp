@@ -41,8 +41,7 @@ std::vector<CostPoint> cost_points(const ShownReplay& replay,
     if (!is_wanted(options.channels, one.label)) continue;
     const double cost = one.map.number_or(key, kNone);
     if (!above_zero(one.score) || !above_zero(cost)) continue;
-    const bool on_front =
-        one.map.has("on_front") && open_report(one.map, "on_front").flag_or(front, false);
+    const bool on_front = one.map.has("on_front") && one.map.map("on_front").flag_or(front, false);
     out.push_back({&one, cost, one.score, on_front, false});
     least = std::fmin(least, one.score);
   }
@@ -173,7 +172,7 @@ Chart cost_figure(std::span<const FigureSource> sources,
 
 std::vector<double> interval_of(const ShownAlgorithm& one, bool rmse) {
   if (rmse) return report_numbers(one.map, "rmse_ci95", 2);
-  const MapReader blind = open_report(one.map, "without_reference");
+  const MapReader blind = one.map.map("without_reference");
   return report_numbers(blind, "predictive_ci95", 2);
 }
 
@@ -268,7 +267,7 @@ Chart ranking_figure(std::span<const FigureSource> sources, const FigureOptions&
   out.y.high = static_cast<double>(rows.size()) - 0.5;
   add_ranking_line(out, "optimum of this scene", replay.optimum, 2, Ink::black);
   if (replay.has_reference && replay.map.has("best_sensor"))
-    for (const MapReader& sensor : open_reports(replay.map, "sensors"))
+    for (const MapReader& sensor : replay.map.maps("sensors"))
       if (sensor.text_or("name", "") == replay.map.text_or("best_sensor", ""))
         add_ranking_line(out, "best single sensor", sensor.number_or("rmse", kNone), 1, Ink::green);
   add_ranking_keys(out);

@@ -19,18 +19,18 @@ constexpr double kHour = 3600, kDay = 86400;
 double score_of(const MapReader& algorithm, bool rmse) {
   if (rmse) return algorithm.number_or("rmse", kNone);
   if (!algorithm.has("without_reference")) return kNone;
-  return open_report(algorithm, "without_reference").number_or("predictive_rms", kNone);
+  return algorithm.map("without_reference").number_or("predictive_rms", kNone);
 }
 
 void read_algorithms(ShownReplay& out, bool rmse) {
   std::vector<ShownAlgorithm> ran;
-  for (MapReader& map : open_reports(out.map, "algorithms")) {
+  for (MapReader& map : out.map.maps("algorithms")) {
     if (map.text_or("status", "") != "ran") continue;
     ShownAlgorithm one{map, map.text("label")};
     one.score = score_of(map, rmse);
     one.bound = map.flag_or("bound", false);
     if (map.has("description"))
-      one.learns = open_report(map, "description").flag_or("learns_from_reference", false);
+      one.learns = map.map("description").flag_or("learns_from_reference", false);
     ran.push_back(std::move(one));
   }
   const std::vector<std::string> order =
@@ -64,18 +64,18 @@ const ShownAlgorithm* ShownReplay::find(const std::string& label) const {
 }
 
 ShownReplay shown_replay(const FigureSource& source, const FigureOptions& options) {
-  ShownReplay out{open_report(*source.replay, source.file, ""), source.file};
+  ShownReplay out{{*source.replay, source.file, ""}, source.file};
   const bool rmse = out.map.text_or("score", "rmse") == "rmse";
   out.score_name = rmse ? "RMSE" : "Leave-one-out RMS";
   out.has_reference = out.map.has("reference");
   out.best = out.map.text_or("best", "");
-  const std::vector<MapReader> inputs = open_reports(out.map, "inputs");
+  const std::vector<MapReader> inputs = out.map.maps("inputs");
   if (inputs.empty()) out.map.refuse("inputs", "the list is empty");
   out.input = input_asked_for(inputs, options, source.file);
   out.input_name = inputs[out.input].text_or("name", "value");
   out.unit = usual_figure_unit(inputs[out.input].text_or("unit", ""));
   out.optimum = rmse ? inputs[out.input].number_or("optimum_rmse", kNone) : kNone;
-  for (const MapReader& sensor : open_reports(out.map, "sensors")) {
+  for (const MapReader& sensor : out.map.maps("sensors")) {
     if (out.sensors.empty()) out.sensor_unit = usual_figure_unit(sensor.text_or("unit", ""));
     out.sensors.push_back(sensor.text("name"));
   }
@@ -103,7 +103,7 @@ void set_time_axis(Chart& figure, const ShownReplay& replay, const FigureOptions
 
 void add_run_marks(Chart& figure, const ShownReplay& replay) {
   if (!replay.map.has("marks")) return;
-  for (const MapReader& mark : open_reports(replay.map, "marks")) {
+  for (const MapReader& mark : replay.map.maps("marks")) {
     const bool fault = mark.text_or("kind", "") == "fault";
     figure.stretches.push_back({mark.number("from_s") / replay.time_unit_s,
                                 mark.number("to_s") / replay.time_unit_s,

@@ -19,16 +19,16 @@ constexpr std::size_t kMostSensors = 24;
 
 /// The part of a list of inputs that is about the input that is drawn.
 MapReader of_input(const MapReader& map, const ShownReplay& replay) {
-  std::vector<MapReader> all = open_reports(map, "inputs");
+  std::vector<MapReader> all = map.maps("inputs");
   if (replay.input >= all.size()) map.refuse("inputs", "the list is too short");
   return all[replay.input];
 }
 
 /// The run, or the stretch of it of which every instant was kept and that holds all that is asked for.
 MapReader run_shown(const ShownReplay& replay, const FigureOptions& options) {
-  MapReader run = open_report(replay.map, "run");
+  MapReader run = replay.map.map("run");
   if (!options.x_range || !run.has("close_ups")) return run;
-  for (MapReader& close : open_reports(run, "close_ups"))
+  for (MapReader& close : run.maps("close_ups"))
     if (close.number("from_s") <= options.x_range->low * replay.time_unit_s &&
         close.number("to_s") >= options.x_range->high * replay.time_unit_s)
       return close;
@@ -55,17 +55,17 @@ bool hides_itself(const ReportTrack& track) {
 /// Where nothing else is asked and the whole run hides itself: the stretch in which the first fault
 /// begins, else the first that was kept with every instant.
 FigureOptions with_readable_stretch(const ShownReplay& replay, FigureOptions options) {
-  const MapReader run = open_report(replay.map, "run");
+  const MapReader run = replay.map.map("run");
   if (options.x_range || !run.has("close_ups")) return options;
   const ReportTrack whole =
       report_track(of_input(run, replay), "estimate", report_numbers(run, "time_s"));
   if (!hides_itself(whole)) return options;
   double fault_s = kNone;
   if (replay.map.has("faults"))
-    for (const MapReader& fault : open_reports(replay.map, "faults"))
+    for (const MapReader& fault : replay.map.maps("faults"))
       fault_s = std::fmin(fault_s, fault.number("from_s"));
   for (const bool any : {false, true})
-    for (const MapReader& close : open_reports(run, "close_ups")) {
+    for (const MapReader& close : run.maps("close_ups")) {
       const double from = close.number("from_s"), to = close.number("to_s");
       if (!(from < to) || (!any && !(from <= fault_s && fault_s <= to))) continue;
       options.x_range = Interval{from / replay.time_unit_s, to / replay.time_unit_s};
@@ -79,7 +79,7 @@ struct RunWords {
 };
 
 RunWords words_of_run(const ShownReplay& replay) {
-  const MapReader run = open_report(replay.map, "run");
+  const MapReader run = replay.map.map("run");
   return {run.text_or("method", "estimate"), run.text_or("sensor", "")};
 }
 
@@ -297,7 +297,7 @@ std::string fault_note(const MapReader& fault, const std::string& answer) {
 
 std::string answer_to(const ShownAlgorithm* tracked, std::size_t fault) {
   if (tracked == nullptr || !tracked->map.has("answers")) return "";
-  for (const MapReader& answer : open_reports(tracked->map, "answers")) {
+  for (const MapReader& answer : tracked->map.maps("answers")) {
     if (answer.count("fault") != fault) continue;
     const auto found = answer.maybe_number("found_after_s");
     if (!found) return "missed";
@@ -335,7 +335,7 @@ Chart faults_figure(std::span<const FigureSource> sources, const FigureOptions& 
   };
   std::size_t k = 0;
   if (replay.map.has("faults"))
-    for (const MapReader& fault : open_reports(replay.map, "faults")) {
+    for (const MapReader& fault : replay.map.maps("faults")) {
       FigureBar bar{.name = "known to the scene",
                     .note = fault_note(fault, answer_to(tracked, k)),
                     .ink = Ink::grey,
@@ -344,7 +344,7 @@ Chart faults_figure(std::span<const FigureSource> sources, const FigureOptions& 
       ++k;
     }
   if (tracked != nullptr && tracked->map.has("faults"))
-    for (const MapReader& found : open_reports(tracked->map, "faults")) {
+    for (const MapReader& found : tracked->map.maps("faults")) {
       const std::string kind = found.text_or("kind", "");
       const bool noise = kind == "noise";
       FigureBar bar{.name = fmt::format("{}, by {}", noise ? "re-weighted" : "out", tracked->label),
@@ -370,7 +370,7 @@ Chart error_allan_figure(std::span<const FigureSource> sources, const FigureOpti
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const MapReader input = of_input(shown[k]->map, replay);
     if (!input.has("allan")) continue;
-    const MapReader curve = open_report(input, "allan");
+    const MapReader curve = input.map("allan");
     FigureSeries series;
     series.name = shown[k]->label;
     series.x = report_numbers(curve, "tau_s");

@@ -5,33 +5,15 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
 #include "libchar/core/schema.hpp"
 
 namespace libchar {
 
-/// A map whose other keys are left alone: reports grow from version to version.
-MapReader open_report(const Document& node, const std::string& file, const std::string& path);
-MapReader open_report(const MapReader& map, std::string_view key);
-/// The elements of a list of maps.
-std::vector<MapReader> open_reports(const MapReader& map, std::string_view key);
-
-/// A list of numbers with nulls, which become NaN; empty where the key is absent. Of another length
+/// A list of numbers, NaN where they are null; empty where the key is absent. Of another length
 /// than `length` (0: any) it is refused. Throws Error(input) with the place.
 std::vector<double> report_numbers(const MapReader& map,
                                    std::string_view key,
                                    std::size_t length = 0);
-std::vector<double> report_numbers(const MapReader& map,
-                                   std::string_view key,
-                                   const Document& list,
-                                   std::size_t length);
-std::vector<bool> report_flags(const MapReader& map, std::string_view key, std::size_t length);
-
-/// Pairs of numbers or null into lower and upper ends, NaN where there are none.
-struct ReportIntervals {
-  std::vector<double> low, high;
-};
-ReportIntervals report_intervals(const MapReader& map, std::string_view key, std::size_t length);
 
 /// A list of one or more series, each of `length` numbers: smallest and largest values, the same
 /// where there is one `value`.

@@ -5,31 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/coefficient_fields.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/model/detail/noise_units.hpp"
 
 namespace libchar {
 namespace {
 
-// Comments beside the words of the enum.
-constexpr Word kStatuses[] = {
-    {name_of(Status::detected), static_cast<int>(Status::detected)},
-    {name_of(Status::not_detected),
-     static_cast<int>(Status::not_detected),
-     "no value: only an upper limit is known"},
-    {name_of(Status::undetermined),
-     static_cast<int>(Status::undetermined),
-     "undetermined: the record cannot tell it from another term, or contradicts it"},
-    {name_of(Status::misfit),
-     static_cast<int>(Status::misfit),
-     "the noise terms do not describe the recording: do not rely on it"},
-    {name_of(Status::given), static_cast<int>(Status::given), "stated, not fitted"},
-    {name_of(Status::not_fitted),
-     static_cast<int>(Status::not_fitted),
-     "not part of the model that was fitted"},
-};
-constexpr Word kIntervals[] = {{"profile", 1, "likelihood"},
-                               {"covariance", 0, "of the fit, log-normal"}};
 constexpr Word kReadings[] = {{"coefficient", 0}, {"floor", 1}};
 
 struct TermText {
@@ -142,13 +124,6 @@ void apply(const MapReader& at,
   if (!conversion.sentence.empty()) model.remarks.push_back(conversion.sentence);
 }
 
-void read_interval(const MapReader& at, std::string_view key, Coefficient& c) {
-  if (!at.has(key)) return;
-  const auto ends = at.interval(key);
-  if (ends.first < 0) at.refuse(key, "expected numbers of at least 0");
-  c.ci95 = {ends.first, ends.second};
-}
-
 // What the conversion reads for itself.
 void read_later(const MapReader&, std::string_view, Coefficient&) {}
 void write_nothing(const Field&, const Coefficient&, std::vector<Entry>&) {}
@@ -175,7 +150,7 @@ void write_interval(const Coefficient& c, std::vector<Entry>& out) {
   // JSON leaves out what it cannot say.
   ci95.in_json =
       known && c.status != Status::given && std::isfinite(c.ci95.low) && std::isfinite(c.ci95.high);
-  Entry by = word_entry("ci95_by", kIntervals, c.profile ? 1 : 0);
+  Entry by = word_entry("ci95_by", interval_words(), c.profile ? 1 : 0);
   by.in_json = ci95.in_json;
   out.push_back(std::move(ci95));
   if (known) out.push_back(std::move(by));
@@ -196,12 +171,11 @@ const Fields<Coefficient>& term_fields() {
           {.range = kNotNegative,
            .comment = "one-sided upper 95 % limit",
            .meaning = "upper limit of a term that was not detected (simulated as 0)"}),
-      custom<Coefficient, read_interval, write_nothing>(
-          "ci95", "[low, high]", {.meaning = "95 % interval"}),
+      field<&Coefficient::ci95>("ci95", {.range = kNotNegative, .meaning = "95 % interval"}),
       field<&Coefficient::profile>(
-          "ci95_by", {.words = kIntervals, .meaning = "where the interval comes from"}),
+          "ci95_by", {.words = interval_words(), .meaning = "where the interval comes from"}),
       field<&Coefficient::status>(
-          "status", {.words = kStatuses, .meaning = "how it is known", .otherwise = "given"}),
+          "status", {.words = status_words(), .meaning = "how it is known", .otherwise = "given"}),
       custom<Coefficient, read_later, write_nothing>(
           "reading",
           "",
@@ -257,7 +231,7 @@ void write_term(const Field& row, const SensorModel& model, std::vector<Entry>& 
   write_interval(c, term.below);
   if (!c.value && c.upper95)
     term.below.push_back({"upper95", *c.upper95, "one-sided upper 95 % limit"});
-  term.below.push_back(word_entry("status", kStatuses, static_cast<int>(c.status)));
+  term.below.push_back(word_entry("status", status_words(), static_cast<int>(c.status)));
   out.push_back(std::move(term));
 }
 

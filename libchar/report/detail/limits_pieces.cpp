@@ -55,34 +55,6 @@ std::string limit_row(const LimitJudgement& j) {
 
 }  // namespace
 
-Json limits_json(const LimitReport& report) {
-  Json out = {{"file", json_text(report.file)},
-              {"sensor", json_text(report.sensor)},
-              {"verdict", json_text(report.verdict)}};
-  for (const LimitStatus status : {LimitStatus::pass, LimitStatus::fail, LimitStatus::not_decided})
-    out[std::string(name_of(status))] = report.count(status);
-  out["terms"] = Json::array();
-  for (const LimitJudgement& j : report.judgements) {
-    const auto key = kTermNames[static_cast<std::size_t>(j.term)].key;
-    const Coefficient& c = j.measured;
-    out["terms"].push_back(
-        {{"channel", json_text(j.channel)},
-         {"term", key},
-         {"limit", j.most},
-         {"unit", json_text(term_unit(key, j.unit))},
-         {"limit_as_given", json_text(j.text)},
-         {"value", json_number(c.value)},
-         {"ci95",
-          c.value ? Json::array({json_number(c.ci95.low), json_number(c.ci95.high)})
-                  : Json(nullptr)},
-         {"upper95", json_number(c.upper95)},
-         {"status", name_of(c.status)},
-         {"judgement", name_of(j.status)},
-         {"sentence", json_text(j.sentence)}});
-  }
-  return out;
-}
-
 std::string limits_section(const LimitReport& report) {
   std::string out = "<section id=\"limits\">\n<h2>Limits" +
                     (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) +

@@ -4,11 +4,9 @@
 #include <string>
 
 #include "libchar/characterize/limits.hpp"
-#include "libchar/core/json.hpp"
 
 namespace libchar {
 
-Json limits_json(const LimitReport& report);
 /// A section of the page.
 std::string limits_section(const LimitReport& report);
 

@@ -108,8 +108,7 @@ class Spectrum(_Result):
     frequency_hz: Array
     value: Array
     dof: Array  #: degrees of freedom of each bin
-    low95: Array  #: ends of the 95 % interval; NaN where they are not known
-    high95: Array
+    ci95: Array  #: rows low, high; NaN where they are not known
     notes: list[str] = dataclasses.field(default_factory=list)
 
 
