@@ -1,3 +1,4 @@
+#include "libchar/fusion/registry.hpp"
 #include "libchar/report/replay_json.hpp"
 
 #include <algorithm>
