@@ -50,7 +50,8 @@ std::string number_text(double value, int digits) {
 
 std::string end_text(double end, double of, int digits) {
   if (std::isinf(end)) return "no end";
-  if (end == 0 || of == 0 || !std::isfinite(of)) return number_text(end, digits);
+  if (end == 0 || of == 0 || !std::isfinite(end) || !std::isfinite(of))
+    return number_text(end, digits);
   const Scientific s = scientific(of, digits);
   // Where only the end would have a power, it has few digits of the value's.
   if (!s.power)

@@ -203,9 +203,9 @@ TEST_CASE("which number goes where: the formulas of docs/exports.md on figures o
   std::map<std::string, std::string> value;
   for (const ConsumerNumber& row : consumer_numbers(fit.term, "rad/s", 200))
     value[row.consumer + "/" + row.key] = row.value;
-  CHECK(value["Kalibr, EuRoC, OpenVINS/gyroscope_noise_density"] == "1.69680×10⁻⁴");
+  CHECK(value["Kalibr, EuRoC, OpenVINS/gyroscope_noise_density"] == "0.000169680");
   CHECK(value["VINS-Mono, VINS-Fusion/gyr_n"] == "0.00339360");
-  CHECK(value["VINS-Mono, VINS-Fusion/gyr_w"] == "2.74258×10⁻⁴");
+  CHECK(value["VINS-Mono, VINS-Fusion/gyr_w"] == "0.000274258");
   CHECK(value["GTSAM/gyroscopeCovariance"] == "2.879×10⁻⁸");
   CHECK(value["GTSAM/biasOmegaCovariance"] == "3.761×10⁻¹⁰");
   CHECK(value["Gazebo SDF/stddev"] == "0.00239964");

@@ -32,10 +32,10 @@ TEST_CASE("coefficients as Markdown, LaTeX and CSV, of all channels or of some")
   const std::string latex = coefficient_table(report, {first.name}, TableFormat::latex);
   CHECK(latex.starts_with("\\begin{tabular}{llrllll}\n"));
   CHECK(latex.ends_with("\\end{tabular}\n"));
-  CHECK_THAT(latex, Contains("\\sqrt{\\mathrm{s}}") && Contains("white noise (N)"));
+  CHECK_THAT(latex, Contains("\\sqrt{\\mathrm{s}}") && Contains("Angle random walk (N)"));
   CHECK_THAT(latex, !Contains("√") && !Contains("·") && !Contains("…"));
   const std::string markdown = coefficient_table(report, {first.name}, TableFormat::markdown);
-  CHECK_THAT(markdown, Contains("|---|---|---:|") && Contains("white noise (N)"));
+  CHECK_THAT(markdown, Contains("|---|---|---:|") && Contains("Angle random walk (N)"));
   CHECK_THROWS_WITH(coefficient_table(report, {"nobody"}, TableFormat::csv), Contains("E0985"));
 }
 
