@@ -13,22 +13,26 @@ version: 1
 sensor: a made-up sheet
 limits:
   - kind: angular_rate
+    density: one-sided
     white_noise: {value: 2, unit: deg/√h}
     bias_instability: {value: 25, unit: deg/h}
   - channels: [accel_z]
+    density: one-sided
     white_noise: {value: 0.001, unit: mg/√Hz}
 """
 CURVE = "x,y\n" + "".join(f"{0.1 * 1.5 ** k!r},{0.02 / (1.5 ** (k / 2)) + 0.001!r}\n" for k in range(20))
 MANIFEST = """format: fleet-manifest
 version: 1
-defaults: {type: imu, limits: limits.yaml}
+defaults: {type: imu, limits: fleet-limits.yaml}
 devices:
   - {device: A01, log: window.csv, batch: "1", temperature_c: 25}
   - {device: A02, log: later.csv, batch: "2"}
   - {device: A01, log: third.csv, batch: "1", temperature_c: 40}
   - {device: A03, log: fourth.csv, batch: "2"}
 """
-FILES = {"limits.yaml": LIMITS, "curve.csv": CURVE, "fleet.yaml": MANIFEST}  # that a run finds
+# that a run finds
+FILES = {"limits.yaml": LIMITS, "fleet-limits.yaml": LIMITS.split("  - channels")[0], "curve.csv": CURVE,
+         "fleet.yaml": MANIFEST}
 
 
 class Run:
@@ -93,13 +97,14 @@ def of_logs(root):
         for log in sorted((root / "fixtures" / folder).iterdir()):
             if log.suffix not in (".py", ".mjs", ".md"):
                 yield f"inspect {folder}/{log.name}", ["inspect", f"fixtures/{folder}/{log.name}"]
+    yield "inspect imu", ["inspect", "fixtures/arrays/float.imu", "--preset", "IXSEA"]
     yield "convert npy", ["convert", IMU, "-o", "imu.npy"]
     yield "convert raw", ["convert", IMU, "-o", "imu.f64"]
     yield "convert csv", ["convert", IMU, "-o", "imu.csv"]
     yield "convert window", ["convert", IMU, "--from", "10s", "--to", "20s", "-c", "gyro_z", "-o", "window.csv"]
-    yield "convert later", ["convert", IMU, "--from", "20s", "--to", "30s", "-o", "later.csv"]
-    yield "convert third", ["convert", IMU, "--from", "30s", "--to", "45s", "-o", "third.csv"]
-    yield "convert fourth", ["convert", IMU, "--from", "45s", "--to", "60s", "-o", "fourth.csv"]
+    yield "convert later", ["convert", IMU, "--from", "20s", "--to", "30s", "-c", "gyro_z", "-o", "later.csv"]
+    yield "convert third", ["convert", IMU, "--from", "30s", "--to", "45s", "-c", "gyro_z", "-o", "third.csv"]
+    yield "convert fourth", ["convert", IMU, "--from", "45s", "--to", "60s", "-c", "gyro_z", "-o", "fourth.csv"]
     yield "inspect raw", ["inspect", "imu.f64"]
 
 
@@ -113,7 +118,7 @@ def of_characterizations():
     yield "characterize streamed", ["characterize", IMU, "-o", "report4", "--memory", "64k"]
     yield "characterize limits", ["characterize", IMU, "-o", "judged", "--limits", "limits.yaml"]
     yield "characterize pool", ["characterize", "window.csv", "later.csv", "-o", "pooled", "--pool"]
-    yield "characterize lot", ["characterize", "window.csv", "later.csv", IMU, "-o", "lot", "--lot"]
+    yield "characterize lot", ["characterize", "window.csv", "later.csv", "third.csv", "-o", "lot", "--lot"]
     yield "compare characterizations", ["compare", "report", "judged"]
     yield "compare characterizations json", ["compare", "report", "judged", "--json"]
     yield "characterize again", ["characterize", IMU, "-o", "report"]
@@ -167,23 +172,23 @@ def of_arrays():
 def of_figures():
     yield "plot list", ["plot", "--list"]
     for kind in ["allan", "psd", "residuals", "trace"]:
-        for source in ["report", "report2", "judged"]:
-            name = f"plot {kind} {source}"
+        for source, channel in [("report", "gyro_z"), ("report2", "accel_z"), ("judged", "gyro*")]:
             out = f"{kind}-{source}"
-            yield name, ["plot", source, "--kind", kind, "-o", f"{out}.svg", "--csv", f"{out}.csv", "--gnuplot",
-                         f"{out}.gp"]
-        yield f"plot {kind} one", ["plot", "report", "--kind", kind, "-c", "gyro_z", "-o", "-"]
+            yield f"plot {kind} {source}", ["plot", source, "--kind", kind, "-c", channel, "-o", f"{out}.svg",
+                                            "--csv", f"{out}.csv", "--gnuplot", f"{out}.gp"]
+        yield f"plot {kind} all", ["plot", "report", "--kind", kind, "-o", "-"]
     for kind in ["ranking", "timeline", "error", "window", "weights", "variances", "faults", "error-allan"]:
         out = f"replay-{kind}"
         yield f"plot {kind}", [
             "plot", "untimed", "--kind", kind, "-o", f"{out}.svg", "--csv", f"{out}.csv", "--gnuplot", f"{out}.gp"]
     for kind in ["front", "memory"]:
         yield Run(f"plot {kind}", ["plot", "array-replay", "--kind", kind, "--csv", "-"], measured=True)
-    yield "plot model", ["plot", GYRO, ACCEL, "-o", "model.svg", "--grey", "--title", "models"]
+    yield "plot model", ["plot", GYRO, "-o", "model.svg", "--grey", "--title", "a model"]
     yield "plot curves", ["plot", "report/curves.csv", GYRO, "-c", "gyro_z", "--label", "measured,model", "-o",
                           "both.svg"]
     yield "plot fit", ["plot", "fit.json", "-o", "fit.svg"]
-    yield "plot ranges", ["plot", "report", "-o", "-", "--x-range", "0.1..10", "--y-range", "1e-4..1", "--width",
+    yield "plot ranges", ["plot", "report", "-c", "gyro_z", "-o", "-", "--x-range", "0.1..10", "--y-range",
+                          "1e-4..1", "--width",
                           "two-columns"]
     yield "plot bad range", ["plot", "report", "-o", "-", "--x-range", "10..1"]
     yield "plot pdf", ["plot", "report", "-c", "gyro_z", "-o", "figure.pdf"]
