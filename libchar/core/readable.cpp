@@ -25,6 +25,7 @@ struct Scientific {
   bool power = false;  ///< to be written as one
 };
 
+/// `value` is finite.
 Scientific scientific(double value, int digits) {
   const std::string text = fmt::format("{:.{}e}", value, digits - 1);
   const std::size_t e = text.find('e');

@@ -77,7 +77,7 @@ struct Tested {
   double dt_s = 0;
   /// Allan deviations of the pieces at an averaging factor; empty: one of them has none
   std::function<std::vector<double>(std::uint64_t m)> pieces;
-  std::uint64_t piece = 0;  ///< samples
+  std::function<AllanCurve()> curve_of_piece;  ///< of one of them, or of any record as long
   std::span<const double> means;
   std::uint64_t per_mean = 1;  ///< samples
 };
@@ -189,8 +189,7 @@ Curves coarse_curves(std::span<const double> means,
 /// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy
 /// tails.
 double excess_scatter(const Tested& record, double within, std::uint64_t m, const NoiseFit& fit) {
-  // Degrees of freedom are those of any record as long as a piece.
-  AllanCurve curve = pyramid_deviation(std::vector<double>(record.piece), record.dt_s);
+  AllanCurve curve = record.curve_of_piece();
   add_fit_intervals(curve, fit);
   for (AllanPoint& point : curve.points) point.deviation = 1;
   const AllanPoint* point = point_of(curve, m);
@@ -339,7 +338,7 @@ Stationarity test_stationarity(std::span<const double> record,
                                double rate_hz,
                                const NoiseFit& fit) {
   if (record.size() < kShortest) return {};
-  Tested tested{record.size(), 1 / rate_hz, {}, record.size() / kPieces, record, 1};
+  Tested tested{record.size(), 1 / rate_hz, {}, {}, record, 1};
   std::optional<Curves> curves;
   tested.pieces = [&](std::uint64_t m) {
     if (!curves) curves = curves_of(record, kPieces, 1 / rate_hz);
@@ -351,6 +350,7 @@ Stationarity test_stationarity(std::span<const double> record,
     }
     return deviations;
   };
+  tested.curve_of_piece = [&] { return curves->front(); };
   return test(tested, fit);
 }
 
@@ -364,12 +364,11 @@ Stationarity test_stationarity(const FittedSums& sums,
     for (std::size_t i = 0; i < means.size(); ++i)
       means[i] -= event_mean(events, rate_hz, static_cast<double>(i) * per_mean, per_mean);
   const std::uint64_t samples = sums.means.samples();
-  Tested tested{samples,
-                1 / rate_hz,
-                {},
-                std::max(sums.pieces.shortest, samples / kPieces),
-                means,
-                sums.means.per_mean()};
+  Tested tested{samples, 1 / rate_hz, {}, {}, means, sums.means.per_mean()};
+  tested.curve_of_piece = [&] {
+    const std::uint64_t length = std::max(sums.pieces.shortest, samples / kPieces);
+    return pyramid_deviation(std::vector<double>(length), 1 / rate_hz);
+  };
   tested.pieces = [&](std::uint64_t m) {
     const auto octave = static_cast<std::size_t>(std::bit_width(m)) - 1;
     if (octave >= sums.pieces.variance.size()) return std::vector<double>();

@@ -114,10 +114,21 @@ TEST_CASE(
   CHECK_THAT(
       table.out,
       Contains("edf,terms,curve\n") && Catch::EndsWith(",mdev\n") && Contains("\ngyro_z,deg/s,1,"));
+  const test::TemporaryFolder folder;
+  const std::string longer = (folder / "long.f64").string();  // more than a leaf
+  std::vector<double> samples((std::size_t{1} << 20U) + 1000);
+  std::uint64_t state = 1;
+  for (double& x : samples) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    x = static_cast<double>(state >> 40U);
+  }
+  std::ofstream(longer, std::ios::binary)
+      .write(reinterpret_cast<const char*>(samples.data()),
+             static_cast<std::streamsize>(samples.size() * sizeof(double)));
+  std::ofstream(longer + ".json") << R"({"dtype": "f64", "endian": "little", "channels": [{"name": "a"}], "rate_hz": 100})";
   for (const char* verb : {"allan", "characterize"}) {
-    const test::TemporaryFolder folder;
     std::vector<std::string> words = {
-        verb, log, "-c", "gyro_z", "--memory", "100KiB", "--taus", "1s,10s", "--segment", "5s"};
+        verb, longer, "-c", "a", "--memory", "100KiB", "--taus", "1s,10s", "--segment", "5s"};
     if (verb == std::string("allan"))
       words.resize(words.size() - 2);
     else
@@ -127,9 +138,9 @@ TEST_CASE(
     CHECK(refused.code == 2);
     CHECK_THAT(refused.err,
                Contains("error E0701: a curve at other times than octaves takes all samples at "
-                        "once: 391 KiB, and 100 KiB are allowed") &&
-                   Contains("give --memory 391KiB, or read less with --channel, --from, --to"));
-    *(std::find(words.begin(), words.end(), "--memory") + 1) = "391KiB";
+                        "once: 8200 KiB, and 100 KiB are allowed") &&
+                   Contains("give --memory 8200KiB, or read less with --channel, --from, --to"));
+    *(std::find(words.begin(), words.end(), "--memory") + 1) = "8200KiB";
     CHECK(test::run(words).code == 0);
   }
 }

@@ -95,7 +95,7 @@ TEST_CASE("model FILE says what the model says, in everybody's units, and the si
   const auto ran = test::run({"model", file});
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, Contains("gyro [deg/s]: gyroscope, 200 Hz"));
-  CHECK_THAT(ran.out, Contains("0.0135 deg/s/√Hz one-sided"));
+  CHECK_THAT(ran.out, Contains("0.01350 deg/s/√Hz one-sided"));
   CHECK_THAT(ran.out, Contains("rad/s/√Hz two-sided"));
   CHECK_THAT(ran.out, Contains("≤ 0.001"));
   CHECK_THAT(ran.out, Contains("one-sided to two-sided density (divided by √2)"));

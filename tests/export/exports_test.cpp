@@ -227,7 +227,7 @@ TEST_CASE(
   auto models = test::euroc_imu();
   models[2].noise[0] = known(3e-4);  // gyr_y
   CHECK(number_after(exported("kalibr", models).text, "gyroscope_noise_density") == 3e-4);
-  CHECK(has(exported("kalibr", models).text, "largest of x 0.0001697, y 0.0003, z 0.0001697"));
+  CHECK(has(exported("kalibr", models).text, "largest of x 0.0001697, y 3e-04, z 0.0001697"));
   ExportOptions options;
   options.axes = AxisChoice::rms;
   CHECK(number_after(exported("kalibr", models, options).text, "gyroscope_noise_density") ==

@@ -104,7 +104,8 @@ void append_bins_of(const PooledPower& power,
       ++kept;
     }
     const double noise = sum - of_events;
-    if (kept == 0 || !(noise > kLeastNoise * of_events)) continue;
+    const bool loud = of_events > 0 && !(noise > kLeastNoise * of_events);
+    if (kept == 0 || loud) continue;
     PowerBin bin;
     bin.low_hz = (static_cast<double>(lo) - 0.5) * step_hz;
     bin.high_hz = (static_cast<double>(hi) - 0.5) * step_hz;
@@ -112,7 +113,8 @@ void append_bins_of(const PooledPower& power,
         hi - lo == 1 ? static_cast<double>(lo) * step_hz : std::sqrt(bin.low_hz * bin.high_hz);
     bin.energy = noise / static_cast<double>(kept);
     // sum (n_k + e_k)² - e_k²: the variance of n_k² is 2 P², that of 2 n_k e_k is 4 P e_k².
-    bin.dof = static_cast<double>(kept * power.pooled) / (1 + 2 * of_events / noise);
+    const double wider = of_events > 0 ? 1 + 2 * of_events / noise : 1;
+    bin.dof = static_cast<double>(kept * power.pooled) / wider;
     bin.first = lo;
     bin.end = hi;
     bin.length = power.length;

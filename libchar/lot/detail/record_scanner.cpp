@@ -94,7 +94,7 @@ bool scan_value(Scanner& in, RecordedValue& out) {
         in_logarithm(out.quantity) ? in.not_negative(out.value) : in.number(out.value);
     if (!value || !in.word(",\"ci95\":[") || !in.number_or_null(out.ci95.low, kNone) ||
         !in.word(",") || !in.number_or_null(out.ci95.high, kInfinity) || !in.word("],\"sd\":") ||
-        !in.number_or_null(out.sd, kNone) || out.sd < 0)
+        !in.number_or_null(out.sd, kNone) || out.sd < 0 || out.ci95.low > out.ci95.high)
       return false;
   }
   if (in.word(",\"square_in_all\":[")) {
