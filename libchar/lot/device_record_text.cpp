@@ -1,6 +1,8 @@
 // A record as a line of JSON, and from any document, with what is wrong in it by line and key; lines as the program writes them are
 // scanned: detail/record_scanner.cpp reads them key by key.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/json_reader.hpp"
@@ -28,13 +30,25 @@ void read_in_all(const MapReader& at, std::string_view key, RecordedValue& v) {
   v.in_all = SquareInAll{of[0], of[1], of[2]};
 }
 
+// As the scanner reads it: an end that is not known is null, and nothing is said of their order.
+void write_ends(const Field& row, const RecordedValue& v, std::vector<Entry>& out) {
+  out.push_back({std::string(row.key), std::vector<double>{v.ci95.low, v.ci95.high}});
+}
+
+void read_ends(const MapReader& at, std::string_view key, RecordedValue& v) {
+  if (!at.has(key)) return;
+  const std::vector<double> ends = at.numbers(key);
+  if (ends.size() != 2) at.refuse(key, "expected a list of two numbers");
+  v.ci95 = {ends[0], std::isnan(ends[1]) ? std::numeric_limits<double>::infinity() : ends[1]};
+}
+
 const Fields<RecordedValue>& value_fields() {
   using T = RecordedValue;
   const FieldText valued = {.written = Written::if_known, .known = when<has_value>};
   static const Fields<T> rows = {
       field<&T::status>("status", {.written = Written::always, .required = true}),
       field<&T::value>("value", valued),
-      field<&T::ci95>("ci95", valued),
+      custom<T, read_ends, write_ends>("ci95", "[low, high]", valued),
       field<&T::sd>("sd",
                     {.range = kNotNegative,
                      .meaning = "relative, but of turn_on_bias and temperature_coefficient",
