@@ -20,7 +20,8 @@ bool same_number(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-/// Where the model that is reported has all terms and the term is well known, its square is that of the value, and hardly skew.
+/// Where the model that is reported has all terms and the term is well known, its square is that of
+/// the value, and hardly skew.
 bool says_more(const Coefficient& c) {
   constexpr double kSame = 1e-6, kWellKnown = 0.05;
   if (!c.in_all || !(c.in_all->sd > 0) || !std::isfinite(c.in_all->sd) ||

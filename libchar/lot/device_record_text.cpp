@@ -1,5 +1,5 @@
-// A record as a line of JSON, and from any document, with what is wrong in it by line and key; lines as the program writes them are
-// scanned: detail/record_scanner.cpp reads them key by key.
+// A record as a line of JSON, and from any document, with what is wrong in it by line and key;
+// lines as the program writes them are scanned: detail/record_scanner.cpp reads them key by key.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,7 +30,7 @@ void read_in_all(const MapReader& at, std::string_view key, RecordedValue& v) {
   v.in_all = SquareInAll{of[0], of[1], of[2]};
 }
 
-// As the scanner reads it: an end that is not known is null, and nothing is said of their order.
+// An end that is not known is null.
 void write_ends(const Field& row, const RecordedValue& v, std::vector<Entry>& out) {
   out.push_back({std::string(row.key), std::vector<double>{v.ci95.low, v.ci95.high}});
 }
@@ -40,6 +40,7 @@ void read_ends(const MapReader& at, std::string_view key, RecordedValue& v) {
   const std::vector<double> ends = at.numbers(key);
   if (ends.size() != 2) at.refuse(key, "expected a list of two numbers");
   v.ci95 = {ends[0], std::isnan(ends[1]) ? std::numeric_limits<double>::infinity() : ends[1]};
+  if (v.ci95.low > v.ci95.high) at.refuse(key, "expected two numbers, the lower first");
 }
 
 const Fields<RecordedValue>& value_fields() {

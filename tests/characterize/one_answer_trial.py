@@ -1,7 +1,8 @@
-"""One log through every door: fit, characterize, --memory, one thread, the stretches of a fleet. Coefficients, intervals, p,
-statuses and what was found have to be the same to the last bit.
+"""One log through every door: fit, characterize, --memory, one thread, the stretches of a fleet. Coefficients,
+intervals, p, statuses and what was found have to be the same to the last bit.
 
-usage: one_answer_trial.py PROGRAM FOLDER [--samples N]...     (needs python3-numpy; 10⁸ samples take some minutes)
+usage: one_answer_trial.py PROGRAM FOLDER [--samples N]...
+(needs python3-numpy; 10⁸ samples take some minutes)
 Clean, dirty (spikes, gaps, a line, a step) and clock logs of each length, made here. Prints a line for each and ends with 1
 where two doors differ.
 """
@@ -82,5 +83,6 @@ for samples in options.samples or [10_000, 1_000_000, 2_100_000, 5_000_000]:
         found = list(doors(log, extra))
         others = [name for name, fit in found if fit != found[0][1]]
         differ += len(others)
-        print(f"{log}: {len(found)} doors, {'one answer' if not others else 'other answers: ' + ', '.join(others)}", flush=True)
+        answer = "one answer" if not others else "other answers: " + ", ".join(others)
+        print(f"{log}: {len(found)} doors, {answer}", flush=True)
 sys.exit(bool(differ))

@@ -125,7 +125,8 @@ TEST_CASE(
   std::ofstream(longer, std::ios::binary)
       .write(reinterpret_cast<const char*>(samples.data()),
              static_cast<std::streamsize>(samples.size() * sizeof(double)));
-  std::ofstream(longer + ".json") << R"({"dtype": "f64", "endian": "little", "channels": [{"name": "a"}], "rate_hz": 100})";
+  std::ofstream(longer + ".json")
+      << R"({"dtype": "f64", "endian": "little", "channels": [{"name": "a"}], "rate_hz": 100})";
   for (const char* verb : {"allan", "characterize"}) {
     std::vector<std::string> words = {
         verb, longer, "-c", "a", "--memory", "100KiB", "--taus", "1s,10s", "--segment", "5s"};

@@ -1,4 +1,3 @@
-#include "libchar/fusion/registry.hpp"
 #include "libchar/report/replay_json.hpp"
 
 #include <algorithm>
@@ -6,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/fusion/registry.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
 using namespace libchar;

@@ -1,5 +1,6 @@
 #pragma once
-// What a report says beside curves and fits: a sentence a channel, what the samples say, rest, limits.
+// What a report says beside curves and fits: a sentence a channel, what the samples say, rest,
+// limits.
 
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/limits.hpp"
