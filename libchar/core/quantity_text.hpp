@@ -1,7 +1,7 @@
 #pragma once
 // Numbers and quantities with units as one types them: strict where a slip would go unseen ("-1" is
-// no count, "010" neither eight nor ten, "nan" and "1e400" are no numbers). Each throws Error(usage)
-// with one sentence that says what would have been right.
+// no count, "010" neither eight nor ten, "nan" and "1e400" are no numbers). Each throws
+// Error(usage) with one sentence that says what would have been right.
 
 #include <cstdint>
 #include <limits>
@@ -28,11 +28,13 @@ double parse_duration_s(std::string_view text);
 /// Hertz: "200", "200Hz", "1.5kHz", "10MHz". > 0.
 double parse_rate_hz(std::string_view text);
 
-/// What such ends are, each with units of its own ("10s..20min", "100Hz..1.5kHz"), or numbers without.
+/// What such ends are, each with units of its own ("10s..20min", "100Hz..1.5kHz"), or numbers
+/// without.
 enum class RangeOf { duration_s, rate_hz, number };
 
-/// FROM..TO, FROM < TO: the one grammar of ranges. An end that is left out is open: 0 (of numbers -infinity) or infinity; `end` says so
-/// of the last ("50..", "..50", "50..end"). `where`: the option, for the message.
+/// FROM..TO, FROM < TO: the one grammar of ranges. An end that is left out is open: 0 (of numbers
+/// -infinity) or infinity; `end` says so of the last ("50..", "..50", "50..end"). `where`: the
+/// option, for the message.
 Interval parse_range(std::string_view text,
                      RangeOf what = RangeOf::duration_s,
                      std::string_view where = "");

@@ -32,8 +32,8 @@ class MapReader {
             std::string file,
             std::string path,
             std::vector<std::string> keys);
-  /// Of a report, which grows keys from version to version: those that nobody asks for are left alone, here and below, and
-  /// what is null in a list is NaN.
+  /// Of a report, which grows keys from version to version: those that nobody asks for are left
+  /// alone, here and below, and what is null in a list is NaN.
   MapReader(const Document& node, std::string file, std::string path);
 
   bool has(std::string_view key) const { return get(key) != nullptr; }
@@ -54,7 +54,8 @@ class MapReader {
   std::string word(std::string_view key, const std::vector<std::string>& words) const;
   /// A list of exactly two numbers, the first below the second.
   std::pair<double, double> interval(std::string_view key) const;
-  /// The same, `value` standing behind `key` or in its list; of a report an end may be null: infinite.
+  /// The same, `value` standing behind `key` or in its list; of a report an end may be null:
+  /// infinite.
   Interval interval_in(std::string_view key, const Document& value) const;
   /// A list of numbers; one bare number is a list of one.
   std::vector<double> numbers(std::string_view key) const;

@@ -1,6 +1,7 @@
 #pragma once
-// What is shown of a noise coefficient, made in one place: value and interval in the channel's unit and in the field's, each with
-// what the unit leaves open, and status. Tables, pages, files and sentences only place it.
+// What is shown of a noise coefficient, made in one place: value and interval in the channel's unit
+// and in the field's, each with what the unit leaves open, and status. Tables, pages, files and
+// sentences only place it.
 
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ struct TermCells {
   ShownValue own;                 ///< in the channel's unit
   std::vector<ShownValue> field;  ///< in the field's units; empty where there is nothing to say
   Status status = Status::not_fitted;
-  /// Standard deviation and Cramér–Rao bound, "±0.37 %"; record length at which the bound is 10 %, "42 min". "" where not known.
+  /// Standard deviation and Cramér–Rao bound, "±0.37 %"; record length at which the bound is 10 %,
+  /// "42 min". "" where not known.
   std::string known_to, best_possible, length_for_10_percent;
 };
 
@@ -58,7 +60,8 @@ std::string status_words(Status status);
 bool doubted(Status status);
 Tint tint_of(Status status);
 
-/// "White noise"; of a channel in `unit`: "Angle random walk" of an angular rate, "Velocity random walk" of an acceleration.
+/// "White noise"; of a channel in `unit`: "Angle random walk" of an angular rate, "Velocity random
+/// walk" of an acceleration.
 std::string term_title(Term term, const std::string& unit = "");
 
 }  // namespace libchar

@@ -33,7 +33,7 @@ void add_file(Json& all, const std::string& name, const char* title, const Json&
 // What the program prints: the part may stand in other documents without the head.
 void add_document(Json& all, const std::string& name, const char* title, Json part) {
   Json& out = all[file_of(name)] = titled(name, title);
-  out["allOf"] = {{{"$ref", file_of("head")}}, {{"$ref", "#/$defs/part"}}};
+  out["allOf"] = {{{"$ref", file_of("head")}}, {{"$ref", file_of(name) + "#/$defs/part"}}};
   out["$defs"]["part"] = std::move(part);
 }
 

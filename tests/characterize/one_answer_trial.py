@@ -3,7 +3,7 @@ intervals, p, statuses and what was found have to be the same to the last bit.
 
 usage: one_answer_trial.py PROGRAM FOLDER [--samples N]...
 (needs python3-numpy; 10⁸ samples take some minutes)
-Clean, dirty (spikes, gaps, a line, a step) and clock logs of each length, made here. Prints a line for each and ends with 1
+Clean, dirty (spikes, gaps, a line, a step) and clock logs of each length. Prints a line for each and ends with 1
 where two doors differ.
 """
 import argparse
