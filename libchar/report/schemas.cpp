@@ -33,7 +33,8 @@ void add_file(Json& all, const std::string& name, const char* title, const Json&
 // What the program prints: the part may stand in other documents without the head.
 void add_document(Json& all, const std::string& name, const char* title, Json part) {
   Json& out = all[file_of(name)] = titled(name, title);
-  out["allOf"] = {{{"$ref", file_of("head")}}, {{"$ref", "#/$defs/part"}}};
+  out["allOf"] = {{{"$ref", file_of("head") + "#/$defs/head"}},
+                  {{"$ref", file_of(name) + "#/$defs/part"}}};
   out["$defs"]["part"] = std::move(part);
 }
 
@@ -113,7 +114,7 @@ Json model_schema() {
   head["required"] = keys["required"];
   keys.erase("required");
   head["type"] = "object";
-  head["allOf"] = {{{"$ref", "#/$defs/keys"}}};
+  head["allOf"] = {{{"$ref", file_of("sensor-model") + "#/$defs/keys"}}};
   head["$defs"]["keys"] = std::move(keys);
   return head;
 }
@@ -134,7 +135,10 @@ Json sidecar_schema() {
 
 Json schemas() {
   Json all = Json::object();
-  add_file(all, "head", "The head of every document of the program", head_schema());
+  add_file(all,
+           "head",
+           "The head of every document of the program",
+           {{"$defs", {{"head", head_schema()}}}});
   add_document(all,
                "inspect",
                "What is in logs",

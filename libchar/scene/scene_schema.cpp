@@ -21,6 +21,7 @@ Json scene_schema() {
   reading["properties"]["path"] = text;
   keys["recording"] = any_of(text, std::move(reading));
   keys["simulate"] = schema_of(simulation_fields().rows, true);
+  keys["simulate"]["properties"]["truth"]["type"] = {"array", "object", "number", "string"};
   keys["sensors"]["items"] = any_of(text, schema_of(sensor_fields().rows, true));
   keys["reference"] =
       any_of({{"type", {"string", "array", "null"}}}, schema_of(reference_fields().rows, true));
