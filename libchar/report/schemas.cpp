@@ -114,7 +114,7 @@ Json model_schema() {
   head["required"] = keys["required"];
   keys.erase("required");
   head["type"] = "object";
-  head["allOf"] = {{{"$ref", "#/$defs/keys"}}};
+  head["allOf"] = {{{"$ref", file_of("sensor-model") + "#/$defs/keys"}}};
   head["$defs"]["keys"] = std::move(keys);
   return head;
 }
