@@ -45,10 +45,31 @@ bool safe(double sum) {
 }  // namespace
 
 struct AllanPyramid::State {
+  /// kBlock places that are set when they are filled: most levels of a short record never are.
+  class Block {
+   public:
+    Block() = default;
+    Block(Block&&) noexcept = default;
+    Block& operator=(Block&&) noexcept = default;
+    Block(const Block& other) : values_(other.values_ ? new double[kBlock] : nullptr) {
+      if (values_) std::copy_n(other.values_.get(), kBlock, values_.get());
+    }
+    Block& operator=(const Block& other) { return *this = Block(other); }
+    ~Block() = default;
+    static Block made() {
+      Block block;
+      block.values_.reset(new double[kBlock]);
+      return block;
+    }
+    double* data() const { return values_.get(); }
+
+   private:
+    std::unique_ptr<double[]> values_;
+  };
+
   struct Level {
     std::array<double, kTail> tail, tail_absent{};  // end of the previous block
-    std::vector<double>
-        block;  // kBlock places for the block that is being filled, `held` of them taken
+    Block block;                                    // being filled, `held` places taken
     std::size_t held = 0;
     std::vector<double> absent;  // how many samples the places of `block` lack; empty: none
     std::array<Tally, 3> tally;  // sums of 1 and 2 (level 0 only) and of 4
@@ -84,7 +105,7 @@ struct AllanPyramid::State {
 AllanPyramid::State::Level& AllanPyramid::State::at(std::size_t level) {
   while (levels.size() <= level) {
     levels.emplace_back();
-    levels.back().block.resize(kBlock);
+    levels.back().block = Block::made();
   }
   return levels[level];
 }
@@ -110,7 +131,7 @@ void AllanPyramid::State::push(const double* x, std::size_t n) {
 
 /// The block of a level is full. It is taken out while it is looked at: levels may be added above.
 void AllanPyramid::State::finish_held(std::size_t level) {
-  std::vector<double> full = std::move(levels[level].block);
+  Block full = std::move(levels[level].block);
   std::vector<double> absent = std::exchange(levels[level].absent, {});
   levels[level].held = 0;
   finish_block(level, full.data(), absent.empty() ? nullptr : absent.data(), kBlock);
@@ -264,11 +285,10 @@ void AllanPyramid::State::close() {
     const std::size_t held = std::exchange(levels[l].held, 0);
     if (held == 0) continue;
     const Level& level = levels[l];
-    const auto taken = [held](const std::vector<double>& v) {
-      return std::vector<double>(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(held));
-    };
-    const std::vector<double> rest = taken(level.block);
-    const std::vector<double> absent = level.absent.empty() ? level.absent : taken(level.absent);
+    const std::vector<double> rest(level.block.data(), level.block.data() + held);
+    std::vector<double> absent;
+    if (!level.absent.empty())
+      absent.assign(level.absent.begin(), level.absent.begin() + static_cast<std::ptrdiff_t>(held));
     finish_block(l, rest.data(), absent.empty() ? nullptr : absent.data(), held);
   }
 }

@@ -79,7 +79,7 @@ std::string explained_sentence(const Characterization& result,
   const auto good =
       static_cast<std::size_t>(std::count_if(judged.begin(), judged.end(), [](const Judgement& j) {
         return !j.has(ObjectionKind::no_fit) && !j.has(ObjectionKind::misfit) &&
-               !j.has(ObjectionKind::unexplained) && !j.has(ObjectionKind::allan_disagrees);
+               !j.has(ObjectionKind::unexplained);
       }));
   if (good < n)
     return fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);
@@ -91,7 +91,10 @@ std::string explained_sentence(const Characterization& result,
       n == 1 ? "The noise model explains the channel within its scatter"
              : fmt::format("The noise model explains {} within their scatter",
                            n == 2 ? "both channels" : fmt::format("all {} channels", n));
-  if (opinions == 0) return out + ".";
+  const bool agree = std::none_of(judged.begin(), judged.end(), [](const Judgement& j) {
+    return j.has(ObjectionKind::allan_disagrees);
+  });
+  if (opinions == 0 || !agree) return out + ".";
   if (opinions == n)
     return out + (n == 1 ? ", and the Allan fit agrees." : ", and the Allan fits agree.");
   return out +
@@ -104,11 +107,13 @@ std::string unsaid_sentence(const Characterization& result,
                             Rating rating) {
   std::vector<std::string> names;
   std::string phrase;
-  for (std::size_t c = 0; c < judged.size(); ++c)
+  for (std::size_t c = 0; c < judged.size(); ++c) {
+    if (judged[c].rating != rating) continue;  // what is not to be used is not used with caution
     if (const Objection* objection = unsaid(judged[c], rating)) {
       names.push_back(result.channels[c].channel.name);
       phrase = objection->phrase;
     }
+  }
   if (names.empty()) return "";
   return fmt::format(" {} {}{}: {}.",
                      rating == Rating::bad ? "Do not use" : "Use",

@@ -63,8 +63,9 @@ const ShownValue& headline(const TermCells& cells) {
 }
 
 std::string unit_with_reading(const ShownValue& shown) {
-  if (shown.reading == Reading::plain) return shown.unit;
-  return fmt::format("{} {}", shown.unit, name_of(shown.reading));
+  const std::string unit = shown.unit == "1" ? "" : shown.unit;  // a ratio
+  if (shown.reading == Reading::plain) return unit;
+  return unit + (unit.empty() ? "" : " ") + std::string(name_of(shown.reading));
 }
 
 std::string said(const ShownValue& shown) {

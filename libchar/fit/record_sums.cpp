@@ -65,15 +65,9 @@ struct RecordStage {
 
 }  // namespace
 
-WelchParts block_transforms(WelchWorkspace* workspace) {
-  WelchOptions options;
-  options.segment = 2 * PowerPart::kBlock;
-  return WelchParts(options, workspace);
-}
-
 FittedSums fitted_sums(std::span<const double> leaf,
                        const LeafKind& kind,
-                       const WelchParts& blocks,
+                       const BlockTransforms& blocks,
                        PowerPart* shared) {
   FittedSums sums;
   PowerPart own;
@@ -81,7 +75,7 @@ FittedSums fitted_sums(std::span<const double> leaf,
     const std::vector<double> filled = kind.bridged ? bridged(leaf) : std::vector<double>();
     own.push(filled.empty() ? leaf : filled);
   } else if (shared == nullptr) {
-    blocks.take(leaf, &own);
+    blocks.take(leaf, own);
   }
   sums.bins = (shared != nullptr ? *shared : own).finish(kind.last);
   sums.allan = sums_of_pieces(leaf, sums.pieces);
@@ -111,7 +105,7 @@ void scale(RecordSums& sums, double factor) {
 }
 
 RecordSums record_sums(std::span<const double> record, bool remedies) {
-  const WelchParts blocks = block_transforms();
+  const BlockTransforms blocks(PowerPart::kBlock);
   RecordStage stage;
   LeafTree<RecordStage> tree(stage);
   for (std::uint64_t leaf = 0; !record.empty(); ++leaf) {

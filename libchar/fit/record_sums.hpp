@@ -12,7 +12,7 @@
 #include "libchar/fit/piece_variances.hpp"
 #include "libchar/fit/power_sums.hpp"
 #include "libchar/fit/spike_cleaner.hpp"
-#include "libchar/spectrum/welch_sums.hpp"
+#include "libchar/spectrum/block_transforms.hpp"
 
 namespace libchar {
 
@@ -40,11 +40,8 @@ struct LeafKind {
 /// them: so they have the same bits whether a spectrum shares them or not.
 FittedSums fitted_sums(std::span<const double> leaf,
                        const LeafKind& kind,
-                       const WelchParts& blocks,
+                       const BlockTransforms& blocks,
                        PowerPart* shared = nullptr);
-/// A spectrum whose transforms are those of the blocks.
-WelchParts block_transforms(WelchWorkspace* workspace = nullptr);
-
 /// Adds the part that follows directly.
 void join(RecordSums& sums, RecordSums later);
 /// Of a node of the tree, what grows with the record is made less where the node is as long as that

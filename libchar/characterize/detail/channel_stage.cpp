@@ -14,7 +14,9 @@ ChannelStage::ChannelStage(const CharacterizeOptions& options,
       keep_(keep),
       in_turn_(options.data != SampleKind::phase && !why_not_in_leaves(options).empty()),
       stage_(std::make_unique<LeafStage>(options, workspace.welch)),
-      tree_(*stage_) {}
+      tree_(*stage_) {
+  meters_.traces = options.wanted.quality;
+}
 
 // A leaf is taken when a further sample shows that it is not the last one.
 void ChannelStage::push(std::span<const double> samples) {
@@ -40,6 +42,7 @@ void ChannelStage::end_leaf(bool last) {
   const std::size_t rows = last ? leaf_.size() : stage_->rows();
   tree_.add(
       {0, leaves_++, stage_->take(std::span(leaf_).first(rows), last, std::exchange(meters_, {}))});
+  meters_.traces = options_->wanted.quality;
   leaf_.erase(leaf_.begin(), end);
   meters_.push(leaf_);
 }

@@ -48,6 +48,7 @@ ValueCensus census_of(const ChannelQuality& quality) {
 
 void SampleMeters::push(std::span<const double> samples) {
   quality.push(samples);
+  if (!traces) return;
   if (count_beyond(samples) == 0) return trace.push(samples);
   std::vector<double> usable(samples.begin(), samples.end());
   forget_wild(usable);
@@ -68,7 +69,7 @@ LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspa
     : options_(&options),
       spectrum_(spectrum_in_leaves(options), &workspace),
       wants_spectrum_(options.wanted.spectrum && why_not_in_leaves(options).empty()),
-      blocks_(block_transforms(&workspace)) {}
+      blocks_(PowerPart::kBlock, &workspace) {}
 
 void LeafStage::make_rate(std::vector<double>& samples) const {
   forget_wild(samples);

@@ -18,6 +18,7 @@ namespace libchar {
 struct SampleMeters {
   QualityMeter quality;
   TraceMeter trace;
+  bool traces = true;  ///< else nobody looks at it
 
   void push(std::span<const double> samples);
 };
@@ -77,7 +78,7 @@ class LeafStage {
   const CharacterizeOptions* options_;
   WelchParts spectrum_;
   bool wants_spectrum_ = false;  ///< from leaves
-  WelchParts blocks_;            ///< of the fit, where the spectrum has others
+  BlockTransforms blocks_;       ///< of the fit, where the spectrum has others
   std::vector<double> rate_;     // scratch
 };
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/readable.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -105,7 +105,7 @@ Estimate TiltComplementaryTuned::step(const Sample& y) {
 }
 
 void TiltComplementaryTuned::remarks(Warnings& warnings) const {
-  if (filter_) warnings.add("tilt_tuned", "time constant " + shortest(time_constant_) + " s");
+  if (filter_) warnings.add("tilt_tuned", "time constant " + brief_text(time_constant_) + " s");
 }
 
 void TiltKalmanTuned::finish_learning() {
@@ -136,9 +136,9 @@ Estimate TiltKalmanTuned::step(const Sample& y) {
 void TiltKalmanTuned::remarks(Warnings& warnings) const {
   if (filter_)
     warnings.add("tilt_tuned",
-                 "angle_noise " + shortest(noise_.angle) + " rad^2/s, bias_noise " +
-                     shortest(noise_.bias) + " (rad/s)^2/s, gravity_variance " +
-                     shortest(noise_.gravity) + " rad^2");
+                 "angle_noise " + brief_text(noise_.angle) + " rad^2/s, bias_noise " +
+                     brief_text(noise_.bias) + " (rad/s)^2/s, gravity_variance " +
+                     brief_text(noise_.gravity) + " rad^2");
 }
 
 }  // namespace libchar::fusion
