@@ -170,3 +170,22 @@ TEST_CASE("noise of 1e-200 or 1e-310 is refused with the reason, not fitted and 
     CHECK_THAT(tiny.channels[0].problems[0], Catch::Contains("do not fit into a double"));
   }
 }
+
+TEST_CASE("the interval of a correlation time holds the time, where other terms are in doubt") {
+  NEEDS_SHARED("data/array_airq3_rtp201908_1min.csv");
+  CharacterizeOptions options;
+  options.wanted = {false, true, false, true};
+  const Characterization air =
+      characterize(test::shared("data/array_airq3_rtp201908_1min.csv").string(), options);
+  int processes = 0;
+  for (const ChannelResult& c : air.channels) {
+    if (!c.fit || !c.fit->gauss_markov || !c.fit->gauss_markov->in_model) continue;
+    ++processes;
+    CAPTURE(c.channel.name);
+    for (const Coefficient& part : {c.fit->gauss_markov->tau_s, c.fit->gauss_markov->sigma}) {
+      CHECK(part.ci95.low <= *part.value);
+      CHECK(*part.value <= part.ci95.high);
+    }
+  }
+  CHECK(processes > 0);
+}

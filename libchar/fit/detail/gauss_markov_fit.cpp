@@ -351,6 +351,9 @@ void settle_gauss_markov(const std::vector<PowerBin>& bins,
   process.tau_s.likelihood_ratio = choice.likelihood_ratio;
   process.tau_s.ci95 = {profile_end(likelihood, peak, spread.log_tau, -1, 1e3),
                         profile_end(likelihood, peak, spread.log_tau, 1, 1e3)};
+  // The peak beside terms that were dropped but may be there is elsewhere.
+  process.tau_s.ci95.low = std::min(process.tau_s.ci95.low, choice.tau_s);
+  process.tau_s.ci95.high = std::max(process.tau_s.ci95.high, choice.tau_s);
   report_joint_bounds(spread.log_theta, fit);
   process.sigma.bound = process.sigma.relative_sd = spread.log_theta[kLent] / 2;
   process.sigma.ci95 = sigma_interval(likelihood, peak, process.tau_s.ci95, spread.given_tau);
