@@ -12,7 +12,7 @@
 #include "libchar/fit/piece_variances.hpp"
 #include "libchar/fit/power_sums.hpp"
 #include "libchar/fit/spike_cleaner.hpp"
-#include "libchar/spectrum/block_transforms.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 
 namespace libchar {
 

@@ -53,4 +53,19 @@ class WelchParts {
   std::unique_ptr<State> state_;
 };
 
+/// Squared cosine transforms of blocks of half a segment, with the bits that WelchParts gives them, where
+/// no spectrum is wanted.
+class BlockTransforms {
+ public:
+  /// `block`: half a segment that Welch's method takes by halves. `workspace`: as of WelchParts.
+  explicit BlockTransforms(std::uint64_t block, WelchWorkspace* workspace = nullptr)
+      : block_(block), workspace_(workspace) {}
+  /// One part of a record.
+  void take(std::span<const double> part, BlockTaker& taker) const;
+
+ private:
+  std::uint64_t block_ = 0;
+  WelchWorkspace* workspace_ = nullptr;
+};
+
 }  // namespace libchar
