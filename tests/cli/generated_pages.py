@@ -171,7 +171,7 @@ print SET''UP
     for words, wanted, unwanted in questions():
         answers.write_text("")
         shell.ask("\x15" + " ".join(["sensorchar", *words]) + "\x14", "\x00", 0.05)
-        end = time.monotonic() + 10
+        end = time.monotonic() + 60
         while "DONE" not in answers.read_text() and time.monotonic() < end:
             shell.ask("", "\x00", 0.05)
         # Of a list, zsh replaces the word behind the last comma.
