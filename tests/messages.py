@@ -1,4 +1,4 @@
-"""Messages of the library speak of the library; tools/flag_names.cpp says them with flags.
+"""Messages of the library speak of the library; tools/help/flag_names.cpp says them with flags.
 
 usage: messages.py ROOT
 A string in libchar/ names no flag ("--rate"). A word in backquotes that stands alone is an option or a
@@ -48,7 +48,7 @@ def strings(text):
 
 
 root = pathlib.Path(sys.argv[1])
-table = (root / "tools/flag_names.cpp").read_text()
+table = (root / "tools/help/flag_names.cpp").read_text()
 flags = dict(re.findall(r'\{"(\w+)", "([^"]+)"\}', table))
 typed = {word
          for path in sorted((root / "tools").rglob("*.cpp")) if path.name != "flag_names.cpp"
@@ -66,17 +66,17 @@ for path in sorted((root / "libchar").rglob("*.[ch]pp")):
         for word in WORD.findall(string):
             used.add(word)
             if word not in flags and word not in NO_FLAGS:
-                faults.append(f"{place}: `{word}` has no row in tools/flag_names.cpp and is not listed in "
+                faults.append(f"{place}: `{word}` has no row in tools/help/flag_names.cpp and is not listed in "
                               f"tests/messages.py")
 for option, flag in flags.items():
     if option not in used:
-        faults.append(f"tools/flag_names.cpp: no message names `{option}`")
+        faults.append(f"tools/help/flag_names.cpp: no message names `{option}`")
     unknown = [word for word in flag.split() if word.startswith("--") and word not in typed]
     unknown += [word for word in flag.split()[:2] if flag.startswith("sensorchar ") and word not in verbs]
     if unknown:
-        faults.append(f"tools/flag_names.cpp: {option}: {unknown[0]} is no flag and no verb of the program")
+        faults.append(f"tools/help/flag_names.cpp: {option}: {unknown[0]} is no flag and no verb of the program")
 if list(flags) != sorted(flags):
-    faults.append("tools/flag_names.cpp: the rows are not in order")
+    faults.append("tools/help/flag_names.cpp: the rows are not in order")
 for word in sorted(NO_FLAGS):
     if word not in used or word in flags:
         faults.append(f"tests/messages.py: {word} need not be listed")

@@ -15,7 +15,7 @@ import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from gates import cpp, shape  # noqa: E402
+from gates import cpp, rooms, shape  # noqa: E402
 from gates.owners import QUESTIONS  # noqa: E402
 
 CEILINGS = pathlib.Path(__file__).resolve().parent / "gates/ceilings.tsv"
@@ -80,7 +80,7 @@ def gate_files(tree, counts):
 def gate_names(tree, counts):
     names = set()
     for path, text in tree.cpp("libchar").items():
-        if path.endswith(".hpp") and path.count("/") <= 2:
+        if path.endswith(".hpp") and rooms.is_public(path):
             for within, scope in cpp.parse(text).walk():
                 if "::".join(s.name for s in (*within, scope) if s.kind != "file") == "libchar":
                     names |= cpp.names_of(scope)

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/quantity_text.hpp"
+#include "libchar/core/text/quantity_text.hpp"
 #include "reading_options.hpp"
 
 namespace sensorchar {

@@ -1,7 +1,7 @@
 #pragma once
 // Colour on a terminal: what asks for a look is seen first. Never in a file or a pipe unless --color always says so.
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 
 namespace sensorchar {
 

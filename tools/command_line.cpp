@@ -10,12 +10,12 @@
 #include <sstream>
 
 #include "colour.hpp"
+#include "help/usage.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/quantity_text.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/version.hpp"
-#include "usage.hpp"
+#include "libchar/core/process/version.hpp"
+#include "libchar/core/text/quantity_text.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 
 namespace CLI {
 class App;

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstddef>
 
-#include "libchar/core/sanitizer.hpp"
+#include "libchar/core/process/sanitizer.hpp"
 
 #if LIBCHAR_SANITIZED_HEAP == 0 && defined(__GLIBC__)
 

@@ -4,9 +4,9 @@
 #include <exception>
 #include <span>
 
-#include "generate.hpp"
-#include "libchar/core/thread_limit.hpp"
-#include "libchar/core/version.hpp"
+#include "help/generate.hpp"
+#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/process/version.hpp"
 #include "verb.hpp"
 
 namespace {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/quantity_text.hpp"
-#include "libchar/core/shell_word.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/quantity_text.hpp"
+#include "libchar/core/text/shell_word.hpp"
 #include "libchar/log/formats.hpp"
 
 namespace sensorchar {

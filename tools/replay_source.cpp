@@ -6,16 +6,16 @@
 #include <cmath>
 #include <iterator>
 
-#include "fault_help.hpp"
-#include "libchar/core/decimal.hpp"
+#include "help/fault_help.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/quantity_text.hpp"
-#include "libchar/core/term_cells.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/scene/fault_text.hpp"
-#include "libchar/scene/preparation_check.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/quantity_text.hpp"
+#include "libchar/core/text/term_cells.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/scene/recorded_scene.hpp"
 #include "libchar/scene/scene_file.hpp"
+#include "libchar/scene/text/fault_text.hpp"
+#include "libchar/scene/text/preparation_check.hpp"
 #include "reading_options.hpp"
 
 namespace sensorchar {

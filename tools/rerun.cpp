@@ -8,11 +8,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document/result_check.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/result_check.hpp"
-#include "libchar/core/version.hpp"
-#include "libchar/report/replay_json.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/process/version.hpp"
+#include "libchar/report/json/replay_json.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

@@ -11,14 +11,14 @@
 #include <system_error>
 
 #include "colour.hpp"
-#include "flag_names.hpp"
 #include "heap_meter.hpp"
+#include "help/flag_names.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/shell_word.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/unfinished_files.hpp"
-#include "libchar/core/whole_file.hpp"
-#include "libchar/fit/curve_table.hpp"
+#include "libchar/core/file/unfinished_files.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "reading_options.hpp"
 

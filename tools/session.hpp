@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/json.hpp"
-#include "libchar/core/work.hpp"
+#include "libchar/core/document/json.hpp"
+#include "libchar/core/process/work.hpp"
 #include "libchar/log/recording.hpp"
 #include "terminal.hpp"
 

@@ -13,13 +13,13 @@
 #include <cstring>
 
 #include "colour.hpp"
-#include "flag_names.hpp"
+#include "help/flag_names.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/term_cells.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/text_table.hpp"
-#include "libchar/core/unfinished_files.hpp"
+#include "libchar/core/file/unfinished_files.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/term_cells.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/text/text_table.hpp"
 
 namespace sensorchar {
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/process/progress.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "libchar/core/warnings.hpp"
 
 namespace sensorchar {

@@ -32,14 +32,14 @@
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/anchored_phase.hpp"
 #include "libchar/allan/detail/family.hpp"
-#include "libchar/allan/detail/present_points.hpp"
+#include "libchar/allan/detail/kernels/present_points.hpp"
 #include "libchar/allan/detail/tau_grid.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/present.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/thread_limit.hpp"
-#include "libchar/core/work.hpp"
+#include "libchar/core/numeric/present.hpp"
+#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/process/work.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "libchar/allan/deviation_types.hpp"
-#include "libchar/core/enum_table.hpp"
-#include "libchar/core/interval.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/numeric/interval.hpp"
 
 namespace libchar {
 

@@ -23,8 +23,8 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_sums.hpp"
-#include "libchar/allan/detail/octave_terms.hpp"
-#include "libchar/allan/detail/pyramid_kernels.hpp"
+#include "libchar/allan/detail/kernels/octave_terms.hpp"
+#include "libchar/allan/detail/kernels/pyramid_kernels.hpp"
 
 namespace libchar {
 namespace {

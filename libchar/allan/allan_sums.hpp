@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/state_archive.hpp"
+#include "libchar/core/numeric/state_archive.hpp"
 
 namespace libchar {
 

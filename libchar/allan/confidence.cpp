@@ -8,8 +8,8 @@
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/family_dof.hpp"
-#include "libchar/core/chi_square.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 namespace {

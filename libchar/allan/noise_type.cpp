@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 namespace {

@@ -10,8 +10,8 @@
 #include "libchar/benchmark/detail/records.hpp"
 #include "libchar/benchmark/turns.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/fit/bounds.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/fit/curve/bounds.hpp"
 
 namespace libchar {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "libchar/benchmark/figure.hpp"
-#include "libchar/core/heap_meter.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/heap_meter.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/model/sensor_model.hpp"
 
 namespace libchar {

@@ -12,7 +12,7 @@
 #include "libchar/benchmark/detail/estimators.hpp"
 #include "libchar/benchmark/detail/records.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fit/bounds.hpp"
+#include "libchar/fit/curve/bounds.hpp"
 
 namespace libchar {
 namespace {

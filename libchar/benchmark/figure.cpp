@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "libchar/core/chi_square.hpp"
-#include "libchar/core/distributions.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {
 namespace {

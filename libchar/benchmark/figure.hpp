@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 
 namespace libchar {
 

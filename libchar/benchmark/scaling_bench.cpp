@@ -11,7 +11,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/benchmark/turns.hpp"
-#include "libchar/core/distributions.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/fusion/runner.hpp"

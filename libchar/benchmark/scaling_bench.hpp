@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "libchar/benchmark/figure.hpp"
-#include "libchar/core/heap_meter.hpp"
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/heap_meter.hpp"
+#include "libchar/core/process/progress.hpp"
 
 namespace libchar {
 

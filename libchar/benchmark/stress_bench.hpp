@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/enum_table.hpp"
-#include "libchar/core/progress.hpp"
+#include "libchar/core/document/enum_table.hpp"
+#include "libchar/core/process/progress.hpp"
 
 namespace libchar {
 

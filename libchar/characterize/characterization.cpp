@@ -11,8 +11,8 @@
 #include "libchar/characterize/detail/channel_stages.hpp"
 #include "libchar/characterize/detail/still.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/term_cells.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/term_cells.hpp"
 
 namespace libchar {
 namespace {

@@ -7,13 +7,13 @@
 
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/characterize/compare/verification.hpp"
 #include "libchar/characterize/detail/summary.hpp"
 #include "libchar/characterize/limits.hpp"
 #include "libchar/characterize/verdict.hpp"
-#include "libchar/characterize/verification.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/fit/shaped_curves.hpp"
+#include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {

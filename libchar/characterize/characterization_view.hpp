@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/characterize/judgement.hpp"
-#include "libchar/characterize/model_curve.hpp"
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/export/consumers.hpp"
 
 namespace libchar {

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "libchar/characterize/verification.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/term_cells.hpp"
-#include "libchar/core/text_table.hpp"
+#include "libchar/characterize/compare/verification.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/term_cells.hpp"
+#include "libchar/core/text/text_table.hpp"
 
 namespace libchar {
 namespace {

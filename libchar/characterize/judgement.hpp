@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/core/enum_table.hpp"
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
+#include "libchar/core/text/text_table.hpp"
 
 namespace libchar {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/model/noise_limits.hpp"
 
 namespace libchar {

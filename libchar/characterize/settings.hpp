@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 
 namespace libchar {
 

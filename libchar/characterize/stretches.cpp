@@ -13,12 +13,12 @@
 #include "libchar/characterize/detail/stretch_order.hpp"
 #include "libchar/characterize/detail/stretch_state.hpp"
 #include "libchar/characterize/settings.hpp"
+#include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/free_memory.hpp"
-#include "libchar/core/json.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/process/free_memory.hpp"
+#include "libchar/core/process/version.hpp"
 #include "libchar/log/channel_names.hpp"
 
 namespace libchar {

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/core/leaf_tree.hpp"
+#include "libchar/core/numeric/leaf_tree.hpp"
 
 namespace libchar {
 

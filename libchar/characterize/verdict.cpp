@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "libchar/core/readable.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/core/term_cells.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/term_cells.hpp"
 
 namespace libchar {
 namespace {

@@ -4,9 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "libchar/core/enum_table.hpp"
-#include "libchar/core/interval.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/numeric/interval.hpp"
 
 namespace libchar {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 
 namespace libchar {
 

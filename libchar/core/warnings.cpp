@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "libchar/core/text.hpp"
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/text/text_table.hpp"
 
 namespace libchar {
 

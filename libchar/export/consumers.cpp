@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/export/detail/consumer_rows.hpp"
 

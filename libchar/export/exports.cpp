@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

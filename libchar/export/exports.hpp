@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/export/sensor_group.hpp"
 
 namespace libchar {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/figure/figure.hpp"
 

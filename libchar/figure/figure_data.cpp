@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/csv_cell.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/csv_cell.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/figure/detail/sheet.hpp"
 
 namespace libchar {

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <filesystem>
 
-#include "libchar/characterize/reported_characterization.hpp"
-#include "libchar/core/document_file.hpp"
+#include "libchar/characterize/compare/reported_characterization.hpp"
+#include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json_reader.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/figure/detail/curve_sources.hpp"
-#include "libchar/figure/detail/report_values.hpp"
-#include "libchar/fit/curve_table.hpp"
+#include "libchar/figure/detail/sources/curve_sources.hpp"
+#include "libchar/figure/detail/sources/report_values.hpp"
+#include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/model/model_json.hpp"
 
 namespace libchar {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/characterize/model_curve.hpp"
-#include "libchar/core/document.hpp"
-#include "libchar/core/interval.hpp"
+#include "libchar/characterize/curves/model_curve.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {

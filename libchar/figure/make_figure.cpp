@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
+#include "libchar/core/text/spelling.hpp"
 #include "libchar/figure/detail/curve_figures.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/figure/detail/replay_figures.hpp"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/figure/figure.hpp"
 #include "libchar/figure/figure_source.hpp"
 

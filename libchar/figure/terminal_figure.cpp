@@ -9,8 +9,8 @@
 #include <cmath>
 #include <utility>
 
-#include "libchar/core/text.hpp"
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "libchar/figure/detail/scale.hpp"
 
 namespace libchar {

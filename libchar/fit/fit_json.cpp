@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "libchar/core/coefficient_fields.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/fit/power_laws.hpp"
+#include "libchar/fit/curve/power_laws.hpp"
 
 namespace libchar {
 namespace {

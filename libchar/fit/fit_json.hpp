@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/fit/fit_result.hpp"
 
 namespace libchar {

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/interval.hpp"
-#include "libchar/core/noise_shape.hpp"
-#include "libchar/fit/event.hpp"
-#include "libchar/fit/power_bins.hpp"
-#include "libchar/fit/stationarity.hpp"
-#include "libchar/fit/temperature.hpp"
+#include "libchar/core/numeric/interval.hpp"
+#include "libchar/core/numeric/noise_shape.hpp"
+#include "libchar/fit/record/power_bins.hpp"
+#include "libchar/fit/signs/event.hpp"
+#include "libchar/fit/signs/stationarity.hpp"
+#include "libchar/fit/signs/temperature.hpp"
 
 namespace libchar {
 

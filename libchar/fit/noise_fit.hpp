@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/fit/event_series.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
-#include "libchar/fit/power_bins.hpp"
-#include "libchar/fit/record_sums.hpp"
-#include "libchar/fit/temperature.hpp"
+#include "libchar/fit/record/power_bins.hpp"
+#include "libchar/fit/record/record_sums.hpp"
+#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/temperature.hpp"
 
 namespace libchar {
 

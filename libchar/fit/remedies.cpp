@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "libchar/core/moments.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/numeric/moments.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libchar/fit/fit_result.hpp"
-#include "libchar/fit/spike_cleaner.hpp"
+#include "libchar/fit/signs/spike_cleaner.hpp"
 
 namespace libchar {
 

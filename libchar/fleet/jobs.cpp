@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 
 namespace libchar {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/output_files.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/status.hpp"
 

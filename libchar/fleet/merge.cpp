@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/shell_word.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/lot/device_record.hpp"
 

@@ -16,14 +16,14 @@
 #include <set>
 #include <utility>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
+#include "libchar/core/document/json_reader.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/json_reader.hpp"
-#include "libchar/core/schema.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/log_digest.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/fleet/detail/unit_cost.hpp"

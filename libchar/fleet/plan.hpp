@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/fleet/manifest.hpp"
 #include "libchar/fleet/unit.hpp"

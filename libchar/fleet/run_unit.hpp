@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "libchar/core/enum_table.hpp"
-#include "libchar/core/progress.hpp"
+#include "libchar/core/document/enum_table.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/fleet/unit.hpp"
 

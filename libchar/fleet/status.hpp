@@ -7,7 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/fleet/plan.hpp"
 
 namespace libchar {

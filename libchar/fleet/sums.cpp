@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/manifest_path.hpp"
 
 namespace libchar {

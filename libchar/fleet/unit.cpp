@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/settings.hpp"
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
+#include "libchar/core/document/json_reader.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json_reader.hpp"
-#include "libchar/core/schema.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/process/version.hpp"
 
 namespace libchar {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/stretches.hpp"
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 
 namespace libchar {
 

@@ -42,7 +42,7 @@
 #include <string>
 #include <string_view>
 
-#include "libchar/core/present.hpp"
+#include "libchar/core/numeric/present.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/fusion/array.hpp"
 #include "libchar/fusion/description.hpp"

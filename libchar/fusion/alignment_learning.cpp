@@ -16,8 +16,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/numeric/dense.hpp"
 #include "libchar/fusion/aligner.hpp"
 #include "libchar/fusion/detail/alignment_samples.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 
 namespace libchar::fusion {
 

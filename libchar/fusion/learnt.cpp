@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar::fusion {
 namespace {

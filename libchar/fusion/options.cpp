@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/spelling.hpp"
 
 namespace libchar::fusion {
 namespace {

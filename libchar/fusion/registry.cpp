@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/fusion/detail/watched_runner.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/fusion/detail/fault/watched_runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "libchar_algorithms.hpp"  // every header of algorithms/, found by CMake
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "libchar/core/dense.hpp"
+#include "libchar/core/numeric/dense.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
 namespace libchar::fusion {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/pattern.hpp"
+#include "libchar/core/text/pattern.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 
 namespace libchar {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <span>
 
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 
 namespace libchar {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/topics/topic_rows.hpp"
 

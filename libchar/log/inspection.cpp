@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/recording_json.hpp"
 
 namespace libchar {

@@ -10,13 +10,13 @@
 #include <limits>
 #include <optional>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/lanes.hpp"
-#include "libchar/core/median.hpp"
-#include "libchar/core/present.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/present.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

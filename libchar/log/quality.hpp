@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/state_archive.hpp"
+#include "libchar/core/numeric/state_archive.hpp"
 #include "libchar/log/recording.hpp"
 
 namespace libchar {

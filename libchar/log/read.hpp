@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/log/recording.hpp"
 
 namespace libchar {

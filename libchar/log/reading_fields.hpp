@@ -1,7 +1,7 @@
 #pragma once
 // The reading options as keys: of a scene's recording, and of the settings that a report records.
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/log/read.hpp"
 
 namespace libchar {

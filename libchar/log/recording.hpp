@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/warnings.hpp"
 
 namespace libchar {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document_file.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/core/document/document_file.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/process/version.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 
 namespace libchar {

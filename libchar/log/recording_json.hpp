@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/recording.hpp"
 

@@ -1,12 +1,12 @@
 #include "libchar/log/text_table.hpp"
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/log/csv/delimiter.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/log/csv/head/delimiter.hpp"
+#include "libchar/log/csv/head/sample.hpp"
 #include "libchar/log/csv/line.hpp"
-#include "libchar/log/csv/number.hpp"
-#include "libchar/log/csv/sample.hpp"
+#include "libchar/log/csv/rows/number.hpp"
 
 namespace libchar {
 namespace {

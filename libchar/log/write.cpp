@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "libchar/log/detail/format.hpp"
 
 namespace libchar {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/output_files.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording.hpp"
 

@@ -7,8 +7,8 @@
 #include <set>
 #include <unordered_map>
 
-#include "libchar/core/pattern.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/pattern.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

@@ -1,6 +1,6 @@
 #include "libchar/lot/device_quantity.hpp"
 
-#include "libchar/core/term_cells.hpp"
+#include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/compare/runs.hpp"
 #include "libchar/characterize/limits.hpp"
-#include "libchar/characterize/runs.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/log_files.hpp"
+#include "libchar/core/file/log_files.hpp"
+#include "libchar/core/process/version.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/core/version.hpp"
-#include "libchar/fit/shaped_curves.hpp"
+#include "libchar/fit/curve/shaped_curves.hpp"
 
 namespace libchar {
 namespace {

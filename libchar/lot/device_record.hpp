@@ -14,7 +14,7 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/lot/device_quantity.hpp"
 

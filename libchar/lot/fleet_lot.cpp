@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/fleet_data.hpp"
 #include "libchar/lot/detail/fleet_verdict.hpp"
-#include "libchar/lot/detail/lot_outliers.hpp"
-#include "libchar/lot/detail/lot_statistics.hpp"
+#include "libchar/lot/detail/statistics/lot_outliers.hpp"
+#include "libchar/lot/detail/statistics/lot_statistics.hpp"
 #include "libchar/lot/detail/worst_devices.hpp"
 
 namespace libchar {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/random_effects.hpp"
+#include "libchar/core/numeric/random_effects.hpp"
 #include "libchar/lot/capability.hpp"
 #include "libchar/lot/control_chart.hpp"
 #include "libchar/lot/device_batches.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/median.hpp"
+#include "libchar/core/numeric/median.hpp"
 
 namespace libchar {
 namespace {

@@ -12,8 +12,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/chi_square.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "libchar/core/interval.hpp"
-#include "libchar/core/random_effects.hpp"
+#include "libchar/core/numeric/interval.hpp"
+#include "libchar/core/numeric/random_effects.hpp"
 #include "libchar/lot/device_quantity.hpp"
 
 namespace libchar {

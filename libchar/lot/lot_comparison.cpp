@@ -10,13 +10,13 @@
 #include <limits>
 #include <numeric>
 
-#include "libchar/core/distributions.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/lot/detail/equal_spread.hpp"
+#include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/fleet_data.hpp"
 #include "libchar/lot/detail/lot_figures.hpp"
+#include "libchar/lot/detail/statistics/equal_spread.hpp"
 
 namespace libchar {
 namespace {

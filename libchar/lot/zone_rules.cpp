@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/distributions.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {
 namespace {

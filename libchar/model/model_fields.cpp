@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/model/detail/noise_term.hpp"
 
 namespace libchar {

@@ -1,7 +1,7 @@
 #pragma once
 // The keys of a sensor-model file: what its reader, its YAML, its JSON and docs/models.md share.
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/model/sensor_model.hpp"
 
 namespace libchar {

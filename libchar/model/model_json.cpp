@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document.hpp"
-#include "libchar/core/document_file.hpp"
-#include "libchar/core/schema.hpp"
+#include "libchar/core/document/document.hpp"
+#include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/model/model_fields.hpp"
 #include "libchar/model/model_reader.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "libchar/model/sensor_model.hpp"
 
 namespace libchar {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/document.hpp"
-#include "libchar/core/document_file.hpp"
+#include "libchar/core/document/document.hpp"
+#include "libchar/core/document/document_file.hpp"
 #include "libchar/model/model_fields.hpp"
 
 namespace libchar {

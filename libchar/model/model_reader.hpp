@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "libchar/core/schema.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/model/sensor_model.hpp"
 
 namespace libchar {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "libchar/core/document_file.hpp"
+#include "libchar/core/document/document_file.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
+#include "libchar/core/text/spelling.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/model/detail/noise_term.hpp"
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/core/noise_terms.hpp"
 
 namespace libchar {

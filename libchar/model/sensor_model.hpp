@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/core/gauss_markov.hpp"
-#include "libchar/core/interval.hpp"
-#include "libchar/core/noise_shape.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/numeric/interval.hpp"
+#include "libchar/core/numeric/noise_shape.hpp"
 
 namespace libchar {
 

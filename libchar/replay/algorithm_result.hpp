@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/fusion/description.hpp"
 #include "libchar/fusion/options.hpp"

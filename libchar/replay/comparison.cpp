@@ -11,11 +11,11 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/median.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/term_cells.hpp"
-#include "libchar/replay/detail/likeness.hpp"
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/term_cells.hpp"
+#include "libchar/replay/detail/plan/likeness.hpp"
 
 namespace libchar {
 namespace {

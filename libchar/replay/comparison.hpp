@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/replay/replay_summary.hpp"
 
 namespace libchar {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/spelling.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/spelling.hpp"
 
 namespace libchar {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/growth_check.hpp"
+#include "libchar/core/file/growth_check.hpp"
 #include "libchar/replay/comparison.hpp"
 
 namespace libchar {

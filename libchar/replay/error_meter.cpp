@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/distributions.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/replay/detail/mean_uncertainty.hpp"
 
 namespace libchar {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 
 namespace libchar {
 

@@ -8,18 +8,18 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/core/term_cells.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/term_cells.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/fusion/runner.hpp"
-#include "libchar/replay/detail/instants.hpp"
+#include "libchar/replay/detail/align/instants.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
-#include "libchar/replay/detail/step_noise.hpp"
+#include "libchar/replay/detail/plan/step_noise.hpp"
 
 namespace libchar {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/replay/fusion_file.hpp"

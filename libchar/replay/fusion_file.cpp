@@ -6,11 +6,11 @@
 #include <cmath>
 #include <filesystem>
 
-#include "libchar/core/document_file.hpp"
+#include "libchar/core/document/document_file.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/output_files.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/file/output_files.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

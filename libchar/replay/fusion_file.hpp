@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/fusion/learnt.hpp"
 #include "libchar/scene/scene.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/heap_meter.hpp"
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/heap_meter.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/replay/replay_result.hpp"
 
 namespace libchar {

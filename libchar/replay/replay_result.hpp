@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/entry.hpp"
-#include "libchar/core/interval.hpp"
+#include "libchar/core/document/entry.hpp"
+#include "libchar/core/numeric/interval.hpp"
+#include "libchar/core/process/work.hpp"
 #include "libchar/core/warnings.hpp"
-#include "libchar/core/work.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/replay/algorithm_result.hpp"
 #include "libchar/replay/fusion_file.hpp"
-#include "libchar/replay/run_shown.hpp"
 #include "libchar/replay/sensor_result.hpp"
+#include "libchar/replay/view/run_shown.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {

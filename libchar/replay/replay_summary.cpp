@@ -7,11 +7,11 @@
 #include <limits>
 #include <set>
 
-#include "libchar/core/document_file.hpp"
+#include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/json_reader.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json_reader.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/schema.hpp"
 #include "libchar/model/model_reader.hpp"
 
 namespace libchar {

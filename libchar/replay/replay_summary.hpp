@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {

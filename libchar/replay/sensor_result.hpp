@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/fusion/alignment.hpp"
 #include "libchar/fusion/error_budget.hpp"
 #include "libchar/replay/error_meter.hpp"

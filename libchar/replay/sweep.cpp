@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/quantity_text.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/quantity_text.hpp"
 #include "libchar/fusion/registry.hpp"
 
 namespace libchar {

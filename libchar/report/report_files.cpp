@@ -4,11 +4,11 @@
 #include <set>
 
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/core/file_name.hpp"
+#include "libchar/core/file/file_name.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/report/csv_curves.hpp"
-#include "libchar/report/html_report.hpp"
-#include "libchar/report/json_report.hpp"
+#include "libchar/report/html/html_report.hpp"
+#include "libchar/report/json/csv_curves.hpp"
+#include "libchar/report/json/json_report.hpp"
 
 namespace libchar {
 

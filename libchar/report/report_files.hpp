@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libchar/characterize/characterization_view.hpp"
-#include "libchar/core/output_files.hpp"
+#include "libchar/core/file/output_files.hpp"
 
 namespace libchar {
 

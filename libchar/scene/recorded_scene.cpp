@@ -8,10 +8,10 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_name.hpp"
-#include "libchar/core/log_files.hpp"
-#include "libchar/core/output_files.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/file/file_name.hpp"
+#include "libchar/core/file/log_files.hpp"
+#include "libchar/core/file/output_files.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/model/model_reader.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/simulate/fault.hpp"

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/utf8.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/text/utf8.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {

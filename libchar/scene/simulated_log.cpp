@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/log/write.hpp"
-#include "libchar/scene/scene_writer.hpp"
+#include "libchar/scene/text/scene_writer.hpp"
 
 namespace libchar {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/core/warnings.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/simulated_scene.hpp"

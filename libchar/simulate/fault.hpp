@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/simulate/random.hpp"
 
 namespace libchar {

@@ -14,8 +14,8 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/thread_limit.hpp"
-#include "libchar/core/work.hpp"
+#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/process/work.hpp"
 #include "libchar/simulate/detail/sensor_chain.hpp"
 
 namespace libchar {

@@ -17,7 +17,7 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
+#include "libchar/core/text/spelling.hpp"
 
 namespace libchar {
 namespace {

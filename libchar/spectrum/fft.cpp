@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/lanes.hpp"
-#include "libchar/core/work.hpp"
+#include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/process/work.hpp"
 #include "libchar/spectrum/detail/fft_plan.hpp"
 
 namespace libchar {

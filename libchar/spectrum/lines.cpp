@@ -24,9 +24,9 @@
 #include <numbers>
 #include <span>
 
-#include "libchar/core/chi_square.hpp"
-#include "libchar/core/distributions.hpp"
-#include "libchar/core/lanes.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/window.hpp"
 

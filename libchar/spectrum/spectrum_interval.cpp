@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/chi_square.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
 
 namespace libchar {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {

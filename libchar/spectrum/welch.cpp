@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/term_cells.hpp"
-#include "libchar/core/thread_limit.hpp"
+#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/term_cells.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/halves_in_place.hpp"
 #include "libchar/spectrum/detail/segment_choice.hpp"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/shared_blocks.hpp"
+#include "libchar/core/process/shared_blocks.hpp"
 #include "libchar/spectrum/welch.hpp"
 #include "libchar/spectrum/welch_sums.hpp"
 

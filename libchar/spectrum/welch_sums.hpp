@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/shared_blocks.hpp"
-#include "libchar/core/state_archive.hpp"
+#include "libchar/core/numeric/state_archive.hpp"
+#include "libchar/core/process/shared_blocks.hpp"
 #include "libchar/spectrum/welch.hpp"
 
 namespace libchar {

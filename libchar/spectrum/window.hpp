@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 
 namespace libchar {
 

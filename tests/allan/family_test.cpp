@@ -10,8 +10,8 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/confidence.hpp"
+#include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json.hpp"
 #include "tests/support/npy.hpp"
 #include "tests/support/shared.hpp"
 

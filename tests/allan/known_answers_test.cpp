@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "tests/support/npy.hpp"
 #include "tests/support/shared.hpp"
 #include "tests/support/table.hpp"

@@ -1,6 +1,6 @@
 // Means over what is present: whole curves, no bias, intervals that cover, whatever the noise and the gaps.
 
-#include "libchar/allan/detail/missing_samples.hpp"
+#include "libchar/allan/detail/kernels/missing_samples.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

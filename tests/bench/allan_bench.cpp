@@ -15,7 +15,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/allan/confidence.hpp"
-#include "libchar/core/moments.hpp"
+#include "libchar/core/numeric/moments.hpp"
 
 using namespace libchar;
 

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/log/csv/dialect.hpp"
-#include "libchar/log/csv/rows.hpp"
+#include "libchar/log/csv/head/dialect.hpp"
+#include "libchar/log/csv/rows/rows.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
 

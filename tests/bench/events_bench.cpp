@@ -13,10 +13,10 @@
 #include <map>
 #include <string>
 
-#include "libchar/fit/digital.hpp"
-#include "libchar/fit/events.hpp"
-#include "libchar/fit/motion.hpp"
 #include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/signs/digital.hpp"
+#include "libchar/fit/signs/events.hpp"
+#include "libchar/fit/signs/motion.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"
 

@@ -9,12 +9,12 @@
 
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/fit/bounds.hpp"
-#include "libchar/fit/detail/bin_likelihood.hpp"
-#include "libchar/fit/detail/scoring.hpp"
+#include "libchar/fit/curve/bounds.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
+#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/power_bins.hpp"
-#include "libchar/fit/record_sums.hpp"
+#include "libchar/fit/record/power_bins.hpp"
+#include "libchar/fit/record/record_sums.hpp"
 #include "tests/support/noise.hpp"
 
 namespace {

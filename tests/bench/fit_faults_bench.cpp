@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "libchar/fit/bounds.hpp"
+#include "libchar/fit/curve/bounds.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "tests/support/noise.hpp"
 

@@ -17,13 +17,13 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/power_bins.hpp"
+#include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/lot/lot_comparison.hpp"
-#include "libchar/report/fleet_report.hpp"
+#include "libchar/report/html/fleet_report.hpp"
 #include "tests/lot/made_fleet.hpp"
 
 namespace {

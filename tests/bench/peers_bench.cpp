@@ -15,7 +15,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/benchmark/detail/peer_estimators.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/fit/curve_fit.hpp"
+#include "libchar/fit/curve/curve_fit.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "tests/support/curves.hpp"
 #include "tests/support/noise.hpp"

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/characterize/model_curve.hpp"
-#include "libchar/characterize/runs.hpp"
-#include "libchar/characterize/verification.hpp"
-#include "libchar/fit/curve_table.hpp"
+#include "libchar/characterize/compare/runs.hpp"
+#include "libchar/characterize/compare/verification.hpp"
+#include "libchar/characterize/curves/model_curve.hpp"
+#include "libchar/fit/curve/curve_table.hpp"
 #include "tests/support/places.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/characterize/runs.hpp"
+#include "libchar/characterize/compare/runs.hpp"
 #include "tests/support/noise.hpp"
 
 namespace {

@@ -18,8 +18,8 @@
 
 #include "libchar/characterize/stretches.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "libchar/log/channel_names.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "tests/characterize/refusal.hpp"
 #include "tests/support/noise.hpp"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/characterize/characterization_check.hpp"
+#include "libchar/characterize/compare/characterization_check.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/report/json_report.hpp"
+#include "libchar/report/json/json_report.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/noise.hpp"
 

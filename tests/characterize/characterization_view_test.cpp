@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include "libchar/characterize/compare/verification.hpp"
 #include "libchar/characterize/limits.hpp"
-#include "libchar/characterize/verification.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

@@ -1,4 +1,4 @@
-#include "libchar/characterize/curve_table_fit.hpp"
+#include "libchar/characterize/curves/curve_table_fit.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/core/leaf_tree.hpp"
+#include "libchar/core/numeric/leaf_tree.hpp"
 
 using namespace libchar;
 

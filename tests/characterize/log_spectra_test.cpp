@@ -1,4 +1,4 @@
-#include "libchar/characterize/log_spectra.hpp"
+#include "libchar/characterize/curves/log_spectra.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
-#include "libchar/report/spectra_text.hpp"
+#include "libchar/report/text/spectra_text.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"
 

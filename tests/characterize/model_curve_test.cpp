@@ -1,11 +1,11 @@
-#include "libchar/characterize/model_curve.hpp"
+#include "libchar/characterize/curves/model_curve.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/fit/stationarity.hpp"
+#include "libchar/fit/signs/stationarity.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

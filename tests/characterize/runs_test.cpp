@@ -1,6 +1,6 @@
 // Runs of one sensor in one likelihood.
 
-#include "libchar/characterize/runs.hpp"
+#include "libchar/characterize/compare/runs.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/characterize/verdict.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fit/digital.hpp"
+#include "libchar/fit/signs/digital.hpp"
 #include "libchar/log/quality.hpp"
 #include "tests/characterize/refusal.hpp"
 #include "tests/support/memory_log.hpp"

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "tests/support/noise.hpp"

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "libchar/characterize/characterization_view.hpp"
-#include "libchar/characterize/verification.hpp"
-#include "libchar/report/characterization_text.hpp"
+#include "libchar/characterize/compare/verification.hpp"
+#include "libchar/report/text/characterization_text.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/characterize/verification.hpp"
+#include "libchar/characterize/compare/verification.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/leaf_tree.hpp"
+#include "libchar/core/numeric/leaf_tree.hpp"
 #include "tests/characterize/refusal.hpp"
 #include "tests/support/memory_log.hpp"
 #include "tests/support/noise.hpp"

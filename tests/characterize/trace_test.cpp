@@ -1,4 +1,4 @@
-#include "libchar/characterize/trace.hpp"
+#include "libchar/characterize/curves/trace.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

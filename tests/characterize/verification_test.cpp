@@ -1,4 +1,4 @@
-#include "libchar/characterize/verification.hpp"
+#include "libchar/characterize/compare/verification.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include "libchar/fit/remedies.hpp"
 #include "libchar/log/write.hpp"
-#include "libchar/report/html_report.hpp"
-#include "libchar/report/json_report.hpp"
+#include "libchar/report/html/html_report.hpp"
+#include "libchar/report/json/json_report.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "tests/support/run.hpp"
 #include "tests/support/shared.hpp"
 

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "tests/support/run.hpp"
 
 using Catch::Contains;

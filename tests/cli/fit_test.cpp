@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/run.hpp"
 

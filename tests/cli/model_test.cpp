@@ -3,8 +3,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/run.hpp"
 

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "tests/support/run.hpp"
 
 using Catch::Contains;

@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 #include "libchar/spectrum/welch.hpp"

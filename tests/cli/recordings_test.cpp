@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/run.hpp"
 #include "tests/support/schemas.hpp"

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/json.hpp"
-#include "libchar/core/moments.hpp"
+#include "libchar/core/document/json.hpp"
+#include "libchar/core/numeric/moments.hpp"
 #include "libchar/log/read.hpp"
 #include "tests/support/run.hpp"
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/run.hpp"
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "tests/support/run.hpp"
 #include "tests/support/shared.hpp"
 

@@ -1,4 +1,4 @@
-#include "libchar/core/chi_square.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,6 +1,6 @@
 // The checksum of zip and MCAP.
 
-#include "libchar/core/crc32.hpp"
+#include "libchar/core/file/crc32.hpp"
 
 #include <catch2/catch.hpp>
 #include <string_view>

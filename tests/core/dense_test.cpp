@@ -1,7 +1,7 @@
 // Known answers of the small dense algebra: inverses of Hilbert matrices are integers (M.-D. Choi,
 // Amer. Math. Monthly 90, 1983).
 
-#include "libchar/core/dense.hpp"
+#include "libchar/core/numeric/dense.hpp"
 
 #include <catch2/catch.hpp>
 

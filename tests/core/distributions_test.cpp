@@ -1,4 +1,4 @@
-#include "libchar/core/distributions.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
 
 #include <catch2/catch.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document/json_reader.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json_reader.hpp"
-#include "libchar/core/schema.hpp"
 
 using namespace libchar;
 

@@ -1,9 +1,9 @@
-#include "libchar/core/entry.hpp"
+#include "libchar/core/document/entry.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
 
 using namespace libchar;
 

@@ -1,4 +1,4 @@
-#include "libchar/core/enum_table.hpp"
+#include "libchar/core/document/enum_table.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,12 +1,12 @@
 // One description of a document: what its rows read, write and say in a table.
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/error.hpp"
 
 using namespace libchar;

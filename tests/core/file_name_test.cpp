@@ -1,8 +1,8 @@
-#include "libchar/core/file_name.hpp"
+#include "libchar/core/file/file_name.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "libchar/core/utf8.hpp"
+#include "libchar/core/text/utf8.hpp"
 
 using namespace libchar;
 

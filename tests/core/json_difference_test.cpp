@@ -1,6 +1,6 @@
 // Where two documents differ.
 
-#include "libchar/core/json_difference.hpp"
+#include "libchar/core/document/json_difference.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

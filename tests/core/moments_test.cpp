@@ -1,4 +1,4 @@
-#include "libchar/core/moments.hpp"
+#include "libchar/core/numeric/moments.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "libchar/core/nameless_file.hpp"
+#include "libchar/core/file/nameless_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

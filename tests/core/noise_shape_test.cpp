@@ -1,4 +1,4 @@
-#include "libchar/core/noise_shape.hpp"
+#include "libchar/core/numeric/noise_shape.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

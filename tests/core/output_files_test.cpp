@@ -1,4 +1,4 @@
-#include "libchar/core/output_files.hpp"
+#include "libchar/core/file/output_files.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

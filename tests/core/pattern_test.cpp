@@ -1,4 +1,4 @@
-#include "libchar/core/pattern.hpp"
+#include "libchar/core/text/pattern.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

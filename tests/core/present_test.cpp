@@ -1,4 +1,4 @@
-#include "libchar/core/present.hpp"
+#include "libchar/core/numeric/present.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Numbers and quantities as one types them: what each is read as, and that slips are refused.
 
-#include "libchar/core/quantity_text.hpp"
+#include "libchar/core/text/quantity_text.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

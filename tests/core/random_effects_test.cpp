@@ -1,6 +1,6 @@
 // Values with known uncertainties and a spread of their own.
 
-#include "libchar/core/random_effects.hpp"
+#include "libchar/core/numeric/random_effects.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

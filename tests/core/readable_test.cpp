@@ -1,4 +1,4 @@
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -1,4 +1,4 @@
-#include "libchar/core/shared_blocks.hpp"
+#include "libchar/core/process/shared_blocks.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // Partial states as bytes: what was written comes back, and what is not that is refused.
 
-#include "libchar/core/state_archive.hpp"
+#include "libchar/core/numeric/state_archive.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

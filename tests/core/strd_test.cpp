@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "libchar/core/dense.hpp"
-#include "libchar/core/moments.hpp"
+#include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/moments.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

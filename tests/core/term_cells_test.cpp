@@ -1,4 +1,4 @@
-#include "libchar/core/term_cells.hpp"
+#include "libchar/core/text/term_cells.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,5 +1,5 @@
 // Tables for a terminal: columns, widths, wrapping.
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/text/text_table.hpp"
 
 #include <catch2/catch.hpp>
 #include <sstream>

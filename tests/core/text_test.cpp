@@ -1,10 +1,10 @@
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/spelling.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/spelling.hpp"
 
 using namespace libchar;
 

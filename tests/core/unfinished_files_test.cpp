@@ -1,4 +1,4 @@
-#include "libchar/core/unfinished_files.hpp"
+#include "libchar/core/file/unfinished_files.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

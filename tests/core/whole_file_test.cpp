@@ -1,4 +1,4 @@
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/export/consumers.hpp"
 #include "tests/export/imu_models.hpp"
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "tests/export/imu_models.hpp"

@@ -8,9 +8,9 @@
 #include <regex>
 #include <sstream>
 
+#include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json.hpp"
-#include "libchar/core/utf8.hpp"
+#include "libchar/core/text/utf8.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "tests/export/imu_models.hpp"
 

@@ -9,10 +9,10 @@
 #include <regex>
 #include <set>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/core/process/version.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"

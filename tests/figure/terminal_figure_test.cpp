@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "tests/figure/figure_parts.hpp"
 
 using namespace libchar;

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/shaped_curves.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "tests/support/noise.hpp"
 

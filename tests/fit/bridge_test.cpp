@@ -1,5 +1,5 @@
 // Short runs of missing samples are filled with what could have stood there.
-#include "libchar/fit/detail/bridge.hpp"
+#include "libchar/fit/detail/band/bridge.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

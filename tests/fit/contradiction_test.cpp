@@ -1,4 +1,4 @@
-#include "libchar/fit/detail/contradiction.hpp"
+#include "libchar/fit/detail/band/contradiction.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "libchar/fit/curve_fit.hpp"
+#include "libchar/fit/curve/curve_fit.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,10 +8,10 @@
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/chi_square.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/spectrum/spectrum.hpp"

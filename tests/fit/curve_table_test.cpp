@@ -1,4 +1,4 @@
-#include "libchar/fit/curve_table.hpp"
+#include "libchar/fit/curve/curve_table.hpp"
 
 #include <catch2/catch.hpp>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "libchar/fit/detail/dct_means.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
 
 #include <catch2/catch.hpp>
 

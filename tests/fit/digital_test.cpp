@@ -1,4 +1,4 @@
-#include "libchar/fit/digital.hpp"
+#include "libchar/fit/signs/digital.hpp"
 
 #include <algorithm>
 #include <array>

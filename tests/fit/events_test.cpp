@@ -1,4 +1,4 @@
-#include "libchar/fit/events.hpp"
+#include "libchar/fit/signs/events.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,12 @@
 #include <numeric>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fit/detail/dct_means.hpp"
-#include "libchar/fit/events/look_elsewhere.hpp"
-#include "libchar/fit/events/regression.hpp"
-#include "libchar/fit/events/series_powers.hpp"
-#include "libchar/fit/events/shapes.hpp"
-#include "libchar/fit/events/step_scan.hpp"
+#include "libchar/fit/detail/events/look_elsewhere.hpp"
+#include "libchar/fit/detail/events/regression.hpp"
+#include "libchar/fit/detail/events/series_powers.hpp"
+#include "libchar/fit/detail/events/shapes.hpp"
+#include "libchar/fit/detail/events/step_scan.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/spectrum/fft.hpp"
 #include "tests/support/noise.hpp"

@@ -5,13 +5,13 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fit/bounds.hpp"
-#include "libchar/fit/detail/bin_likelihood.hpp"
-#include "libchar/fit/detail/polish.hpp"
+#include "libchar/fit/curve/bounds.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
+#include "libchar/fit/detail/curve/polish.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/power_sums.hpp"
+#include "libchar/fit/record/power_sums.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

@@ -1,14 +1,14 @@
 // The series of means of a long record: blocks and slow means against the noise they are of, and in
 // parts.
 
-#include "libchar/fit/detail/mean_series.hpp"
+#include "libchar/fit/detail/record/mean_series.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/power_sums.hpp"
+#include "libchar/fit/record/power_sums.hpp"
 #include "tests/fit/power_state.hpp"
 
 using namespace libchar;

@@ -1,4 +1,4 @@
-#include "libchar/fit/motion.hpp"
+#include "libchar/fit/signs/motion.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/fit/events.hpp"
-#include "libchar/fit/noise_powers.hpp"
+#include "libchar/fit/record/noise_powers.hpp"
+#include "libchar/fit/signs/events.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"
 #include "tests/support/shared.hpp"

@@ -1,9 +1,9 @@
-#include "libchar/fit/power_bins.hpp"
+#include "libchar/fit/record/power_bins.hpp"
 
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "libchar/fit/power_sums.hpp"
+#include "libchar/fit/record/power_sums.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

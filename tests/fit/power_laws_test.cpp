@@ -1,15 +1,15 @@
 // A clock's power laws: each of the five kinds of noise gets its own coefficient, from an independent generator.
-#include "libchar/fit/power_laws.hpp"
+#include "libchar/fit/curve/power_laws.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/fit/detail/dct_means.hpp"
-#include "libchar/fit/detail/flicker_phase_means.hpp"
+#include "libchar/fit/curve/shaped_curves.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
+#include "libchar/fit/detail/record/flicker_phase_means.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/shaped_curves.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "tests/support/noise.hpp"
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "libchar/fit/power_sums.hpp"
+#include "libchar/fit/record/power_sums.hpp"
 
 namespace test {
 

@@ -1,7 +1,7 @@
 // Parts of a record joined against the record as one part: bins of clean records, gaps, missing
 // samples.
 
-#include "libchar/fit/power_sums.hpp"
+#include "libchar/fit/record/power_sums.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

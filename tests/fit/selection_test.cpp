@@ -1,13 +1,13 @@
 // Intervals of terms that are reported because they passed a threshold.
-#include "libchar/fit/detail/selection.hpp"
+#include "libchar/fit/detail/curve/selection.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "libchar/fit/detail/profile.hpp"
+#include "libchar/fit/detail/curve/profile.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/power_bins.hpp"
+#include "libchar/fit/record/power_bins.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

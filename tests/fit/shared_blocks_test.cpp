@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "libchar/fit/power_sums.hpp"
+#include "libchar/fit/record/power_sums.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 using namespace libchar;

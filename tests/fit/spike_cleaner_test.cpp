@@ -1,6 +1,6 @@
 // What is a spike and what is not: alone, in pairs and runs, at the ends; and noise of kinds that
 // only look wild.
-#include "libchar/fit/spike_cleaner.hpp"
+#include "libchar/fit/signs/spike_cleaner.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Noise that is the same throughout is left alone; noise that changes is told, with its place and its size.
-#include "libchar/fit/stationarity.hpp"
+#include "libchar/fit/signs/stationarity.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "libchar/core/silent_glog.hpp"
-#include "libchar/fit/detail/solver_settings.hpp"
+#include "libchar/core/process/silent_glog.hpp"
+#include "libchar/fit/detail/curve/solver_settings.hpp"
 
 namespace test {
 namespace {

@@ -1,4 +1,4 @@
-#include "libchar/fit/temperature.hpp"
+#include "libchar/fit/signs/temperature.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/settings.hpp"
-#include "libchar/core/entry.hpp"
+#include "libchar/core/document/entry.hpp"
 #include "libchar/core/error.hpp"
 
 using namespace libchar;

@@ -1,7 +1,7 @@
 // The smoother of the virtual sensor against the whole problem solved at once: of all samples together
 // with the covariance of all drifts at all instants, by least squares.
 
-#include "libchar/fusion/detail/bias_smoother.hpp"
+#include "libchar/fusion/detail/bias/bias_smoother.hpp"
 
 #include <Eigen/Core>
 #include <catch2/catch.hpp>

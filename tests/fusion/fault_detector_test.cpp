@@ -6,10 +6,10 @@
 #include <functional>
 #include <numbers>
 
-#include "libchar/fusion/detail/cusum_bank.hpp"
-#include "libchar/fusion/detail/fault_isolation.hpp"
-#include "libchar/fusion/detail/fault_watch.hpp"
-#include "libchar/fusion/detail/repeat_watch.hpp"
+#include "libchar/fusion/detail/fault/cusum_bank.hpp"
+#include "libchar/fusion/detail/fault/fault_isolation.hpp"
+#include "libchar/fusion/detail/fault/fault_watch.hpp"
+#include "libchar/fusion/detail/fault/repeat_watch.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/noise.hpp"
 

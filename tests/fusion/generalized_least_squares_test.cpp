@@ -1,6 +1,6 @@
 // Generalized least squares: known answers, with variances by batch MINQUE.
 
-#include "libchar/fusion/detail/generalized_least_squares.hpp"
+#include "libchar/fusion/detail/variances/generalized_least_squares.hpp"
 
 #include <Eigen/Core>
 #include <catch2/catch.hpp>

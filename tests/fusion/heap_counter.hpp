@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "libchar/core/sanitizer.hpp"
+#include "libchar/core/process/sanitizer.hpp"
 
 namespace test {
 

@@ -9,7 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/network_training.hpp"
+#include "libchar/fusion/detail/network/network_training.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/algebra.hpp"
 #include "tests/support/code_of.hpp"

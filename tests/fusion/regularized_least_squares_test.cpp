@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "libchar/fusion/algorithms/least_squares.hpp"
-#include "libchar/fusion/detail/error_weights.hpp"
+#include "libchar/fusion/detail/variances/error_weights.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/algebra.hpp"
 #include "tests/support/noise.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/fusion/runner.hpp"
 #include "tests/support/shared.hpp"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "libchar/fit/curve_table.hpp"
+#include "libchar/fit/curve/curve_table.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 #include "tests/support/memory_log.hpp"
 

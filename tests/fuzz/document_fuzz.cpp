@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 
 using namespace libchar;

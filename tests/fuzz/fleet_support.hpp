@@ -10,11 +10,11 @@
 #include <string_view>
 
 #include "libchar/characterize/settings.hpp"
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
+#include "libchar/core/document/json.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json.hpp"
-#include "libchar/core/schema.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/core/process/version.hpp"
 #include "libchar/fleet/unit.hpp"
 
 namespace fuzz {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/quantity_text.hpp"
-#include "libchar/log/csv/number.hpp"
-#include "libchar/log/csv/vector_rows.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/quantity_text.hpp"
+#include "libchar/log/csv/rows/number.hpp"
+#include "libchar/log/csv/rows/vector_rows.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 
 using namespace libchar;

@@ -6,7 +6,7 @@
 
 #include "libchar/lot/detail/record_scanner.hpp"
 #include "libchar/lot/fleet_lot.hpp"
-#include "libchar/report/fleet_report.hpp"
+#include "libchar/report/html/fleet_report.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 
 using namespace libchar;

@@ -1,8 +1,8 @@
 // Any bytes as report.json of a characterization (first byte even) or of a replay (odd). A report
 // compared with itself shows no difference.
 
-#include "libchar/characterize/characterization_comparison.hpp"
-#include "libchar/characterize/reported_characterization.hpp"
+#include "libchar/characterize/compare/characterization_comparison.hpp"
+#include "libchar/characterize/compare/reported_characterization.hpp"
 #include "libchar/replay/comparison.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 

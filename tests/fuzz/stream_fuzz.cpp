@@ -6,7 +6,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/core/moments.hpp"
+#include "libchar/core/numeric/moments.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "libchar/characterize/stretches.hpp"
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/lot/device_record.hpp"
 #include "tests/fuzz/fleet_support.hpp"

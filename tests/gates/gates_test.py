@@ -107,10 +107,10 @@ class Gates(unittest.TestCase):
             self.refused("names", "libchar")
 
     def test_eigen(self):
-        self.write("libchar/core/dense.hpp", "#include <Eigen/Core>\n")
+        self.write("libchar/core/numeric/dense.hpp", "#include <Eigen/Core>\n")
         self.accepted()
-        self.write("libchar/fit/fit.hpp", '#include "libchar/core/dense.hpp"\n')
-        self.refused("eigen", "libchar/core/dense.hpp")
+        self.write("libchar/fit/fit.hpp", '#include "libchar/core/numeric/dense.hpp"\n')
+        self.refused("eigen", "libchar/core/numeric/dense.hpp")
 
     def test_columns(self):
         self.write("libchar/fit/url.hpp", "// https://example.org/" + "a" * 120 + "\n")

@@ -9,6 +9,8 @@ import statistics
 import subprocess
 import tokenize
 
+from gates import rooms
+
 
 def docstrings(text):
     """Numbers of the lines of docstrings."""
@@ -76,7 +78,7 @@ def print_shape(root):
         print(f"  parameters, median / p90 / most            "
               f"{spread([parameters(t.get('signature', '()')) for t in functions])}")
         comment = code = 0
-        public = [p for p in folder.glob("*/*.hpp")] + [p for p in folder.glob("*.hpp")]
+        public = [p for p in folder.rglob("*.hpp") if rooms.is_public(p.relative_to(root).as_posix())]
         for path in public:
             for line in path.read_text().splitlines():
                 comment += bool(re.search(r"//", line))

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "tests/support/shared.hpp"
 

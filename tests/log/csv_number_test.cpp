@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "libchar/log/csv/number.hpp"
+#include "libchar/log/csv/rows/number.hpp"
 
 using namespace libchar::csv;
 

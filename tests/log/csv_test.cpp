@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "libchar/log/csv/header.hpp"
+#include "libchar/log/csv/head/header.hpp"
 #include "tests/log/libraries.hpp"
 #include "tests/log/log_text.hpp"
 

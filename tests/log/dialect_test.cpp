@@ -1,13 +1,13 @@
 // How the dialect of a CSV file is found out from its first lines, and where a message says that something is wrong.
-#include "libchar/log/csv/dialect.hpp"
+#include "libchar/log/csv/head/dialect.hpp"
 
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "libchar/log/csv/delimiter.hpp"
-#include "libchar/log/csv/sample.hpp"
+#include "libchar/log/csv/head/delimiter.hpp"
+#include "libchar/log/csv/head/sample.hpp"
 #include "tests/log/log_text.hpp"
 
 using namespace libchar;

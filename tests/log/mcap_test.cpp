@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "libchar/core/crc32.hpp"
+#include "libchar/core/file/crc32.hpp"
 #include "libchar/log/ros/decompress.hpp"
 #include "tests/log/libraries.hpp"
 #include "tests/log/ros_values.hpp"

@@ -1,13 +1,13 @@
 // Definitions of ROS messages, and the steps that are made of them, on messages laid out by hand.
 
-#include "libchar/log/ros/message_definition.hpp"
+#include "libchar/log/ros/messages/message_definition.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
-#include "libchar/log/ros/known_messages.hpp"
-#include "libchar/log/ros/message_decoder.hpp"
+#include "libchar/log/ros/messages/known_messages.hpp"
+#include "libchar/log/ros/messages/message_decoder.hpp"
 
 using namespace libchar;
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/read.hpp"

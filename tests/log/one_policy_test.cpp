@@ -9,8 +9,8 @@
 #include <fstream>
 #include <map>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/log/read.hpp"
 #include "tests/support/shared.hpp"
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/moments.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/core/state_archive.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/numeric/moments.hpp"
+#include "libchar/core/numeric/state_archive.hpp"
 
 using namespace libchar;
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/log/binary/number_type.hpp"
 #include "libchar/log/binary/sidecar.hpp"

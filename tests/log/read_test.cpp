@@ -10,7 +10,7 @@
 #include <cstring>
 #include <thread>
 
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "tests/log/log_text.hpp"
 
 using namespace libchar;

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "libchar/core/log_files.hpp"
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/log_files.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "tests/log/libraries.hpp"
 #include "tests/log/ros_values.hpp"
 

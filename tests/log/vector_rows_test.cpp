@@ -1,4 +1,4 @@
-#include "libchar/log/csv/vector_rows.hpp"
+#include "libchar/log/csv/rows/vector_rows.hpp"
 
 #include <catch2/catch.hpp>
 #include <charconv>

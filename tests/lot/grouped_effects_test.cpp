@@ -1,11 +1,11 @@
 // Values in groups: what differs within and between them.
 
-#include "libchar/lot/detail/grouped_effects.hpp"
+#include "libchar/lot/detail/statistics/grouped_effects.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/core/distributions.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

@@ -1,6 +1,6 @@
 // Lines through the values of groups, one spread about all of them.
 
-#include "libchar/lot/detail/grouped_lines.hpp"
+#include "libchar/lot/detail/statistics/grouped_lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Squares of which some are not told from zero.
 
-#include "libchar/lot/detail/lognormal_effects.hpp"
+#include "libchar/lot/detail/statistics/lognormal_effects.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/utf8.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/utf8.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "tests/report/synthetic.hpp"
 

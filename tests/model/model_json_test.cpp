@@ -4,8 +4,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document/fields.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/fields.hpp"
 #include "libchar/model/model_fields.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "tests/support/shared.hpp"

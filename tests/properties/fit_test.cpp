@@ -3,11 +3,11 @@
 #include <catch2/catch.hpp>
 
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/fit/bounds.hpp"
-#include "libchar/fit/curve_fit.hpp"
+#include "libchar/fit/curve/bounds.hpp"
+#include "libchar/fit/curve/curve_fit.hpp"
 #include "libchar/fit/noise_fit.hpp"
-#include "libchar/fit/power_bins.hpp"
-#include "libchar/fit/power_sums.hpp"
+#include "libchar/fit/record/power_bins.hpp"
+#include "libchar/fit/record/power_sums.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/simulate/random.hpp"

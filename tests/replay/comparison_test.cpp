@@ -8,7 +8,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/replay/comparison_check.hpp"
 #include "libchar/replay/replay_summary.hpp"
-#include "libchar/report/comparison_text.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "tests/support/shared.hpp"
 
 using Catch::Contains;

@@ -6,9 +6,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/replay/detail/step_noise.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/replay.hpp"
 #include "tests/replay/scene_text.hpp"
 #include "tests/support/noise.hpp"

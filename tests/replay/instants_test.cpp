@@ -1,4 +1,4 @@
-#include "libchar/replay/detail/instants.hpp"
+#include "libchar/replay/detail/align/instants.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "libchar/core/error.hpp"
-#include "libchar/replay/detail/resampled.hpp"
-#include "libchar/replay/detail/rest.hpp"
+#include "libchar/replay/detail/align/resampled.hpp"
+#include "libchar/replay/detail/plan/rest.hpp"
 #include "tests/replay/scene_text.hpp"
 
 using namespace libchar;

@@ -1,5 +1,5 @@
 // Known delays, whole and fractional; missing samples; nothing to find; the robot's 0.10 s.
-#include "libchar/replay/detail/lag.hpp"
+#include "libchar/replay/detail/align/lag.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

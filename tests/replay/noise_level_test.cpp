@@ -1,5 +1,5 @@
 // Against the simulator: what it makes has the variance that is said.
-#include "libchar/replay/detail/noise_level.hpp"
+#include "libchar/replay/detail/plan/noise_level.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Trends and filters that all sensors and the reference go through alike.
-#include "libchar/replay/detail/preparation.hpp"
+#include "libchar/replay/detail/plan/preparation.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/replay/detail/instants.hpp"
+#include "libchar/replay/detail/align/instants.hpp"
 #include "libchar/replay/replay.hpp"
 #include "tests/replay/scene_text.hpp"
 

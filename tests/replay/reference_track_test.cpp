@@ -1,5 +1,5 @@
 // A reference between its own samples; an angle goes the short way round.
-#include "libchar/replay/detail/reference_track.hpp"
+#include "libchar/replay/detail/align/reference_track.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numeric>
 
-#include "libchar/replay/detail/instants.hpp"
+#include "libchar/replay/detail/align/instants.hpp"
 #include "tests/replay/replay_numbers.hpp"
 #include "tests/replay/scene_text.hpp"
 

@@ -1,4 +1,4 @@
-#include "libchar/replay/replay_view.hpp"
+#include "libchar/replay/view/replay_view.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -6,9 +6,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "libchar/replay/detail/thinned_tracks.hpp"
-#include "libchar/replay/verdict.hpp"
-#include "libchar/report/replay_json.hpp"
+#include "libchar/replay/detail/tracks/thinned_tracks.hpp"
+#include "libchar/replay/view/verdict.hpp"
+#include "libchar/report/json/replay_json.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
 using namespace libchar;

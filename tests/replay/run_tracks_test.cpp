@@ -1,4 +1,4 @@
-#include "libchar/replay/detail/run_tracks.hpp"
+#include "libchar/replay/detail/tracks/run_tracks.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

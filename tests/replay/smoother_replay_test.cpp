@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/replay/fuse.hpp"
 #include "libchar/replay/replay.hpp"
 #include "tests/replay/scene_text.hpp"

@@ -1,4 +1,4 @@
-#include "libchar/replay/verdict.hpp"
+#include "libchar/replay/view/verdict.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/report/bench_against.hpp"
-#include "libchar/report/bench_report_files.hpp"
+#include "libchar/report/compare/bench_against.hpp"
+#include "libchar/report/compare/bench_report_files.hpp"
 
 using namespace libchar;
 using Catch::Contains;

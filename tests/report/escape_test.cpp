@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "libchar/core/csv_cell.hpp"
+#include "libchar/core/text/csv_cell.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

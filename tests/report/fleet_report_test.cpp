@@ -1,7 +1,7 @@
 // What is written of a fleet: the same bytes whatever the order, tables that read back, a page of
 // bounded size, nothing injected.
 
-#include "libchar/report/fleet_report.hpp"
+#include "libchar/report/html/fleet_report.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -11,14 +11,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "libchar/core/csv_cell.hpp"
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/csv_cell.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/report/coefficient_table.hpp"
+#include "libchar/report/compare/fleet_comparison_text.hpp"
 #include "libchar/report/detail/npz_writer.hpp"
-#include "libchar/report/detail/svg_lot.hpp"
-#include "libchar/report/fleet_comparison_text.hpp"
+#include "libchar/report/detail/svg/svg_lot.hpp"
+#include "libchar/report/text/coefficient_table.hpp"
 #include "tests/lot/made_fleet.hpp"
 #include "tests/report/written_fleet.hpp"
 #include "tests/support/schemas.hpp"

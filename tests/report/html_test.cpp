@@ -4,9 +4,9 @@
 #include <sstream>
 #include <string>
 
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "libchar/report/detail/assets.hpp"
-#include "libchar/report/html_report.hpp"
+#include "libchar/report/html/html_report.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/shared.hpp"

@@ -1,4 +1,4 @@
-#include "libchar/report/inspection_text.hpp"
+#include "libchar/report/text/inspection_text.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "libchar/core/whole_file.hpp"
-#include "libchar/report/fleet_comparison_text.hpp"
-#include "libchar/report/fleet_report.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/report/compare/fleet_comparison_text.hpp"
+#include "libchar/report/html/fleet_report.hpp"
 #include "tests/lot/made_fleet.hpp"
 
 namespace {

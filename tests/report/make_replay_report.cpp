@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "libchar/replay/replay.hpp"
-#include "libchar/report/replay_html.hpp"
-#include "libchar/report/replay_json.hpp"
-#include "libchar/report/replay_markdown.hpp"
+#include "libchar/report/html/replay_html.hpp"
+#include "libchar/report/json/replay_json.hpp"
+#include "libchar/report/replay/replay_markdown.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/report/csv_curves.hpp"
-#include "libchar/report/html_report.hpp"
-#include "libchar/report/json_report.hpp"
+#include "libchar/report/html/html_report.hpp"
+#include "libchar/report/json/csv_curves.hpp"
+#include "libchar/report/json/json_report.hpp"
 #include "tests/report/synthetic.hpp"
 
 int main(int argc, char** argv) {

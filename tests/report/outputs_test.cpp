@@ -7,12 +7,12 @@
 #include <sstream>
 
 #include "libchar/characterize/verdict.hpp"
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/export/consumers.hpp"
 #include "libchar/log/inspection.hpp"
-#include "libchar/report/csv_curves.hpp"
-#include "libchar/report/html_report.hpp"
-#include "libchar/report/json_report.hpp"
+#include "libchar/report/html/html_report.hpp"
+#include "libchar/report/json/csv_curves.hpp"
+#include "libchar/report/json/json_report.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "libchar/characterize/characterization_view.hpp"
-#include "libchar/core/json.hpp"
-#include "libchar/report/fleet_report.hpp"
-#include "libchar/report/html_report.hpp"
-#include "libchar/report/runs_report.hpp"
+#include "libchar/core/document/json.hpp"
+#include "libchar/report/html/fleet_report.hpp"
+#include "libchar/report/html/html_report.hpp"
+#include "libchar/report/html/runs_report.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic.hpp"
 

@@ -1,10 +1,10 @@
-#include "libchar/report/replay_html.hpp"
+#include "libchar/report/html/replay_html.hpp"
 
 #include <catch2/catch.hpp>
 #include <regex>
 
 #include "libchar/report/detail/assets.hpp"
-#include "libchar/report/replay_markdown.hpp"
+#include "libchar/report/replay/replay_markdown.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

@@ -1,4 +1,4 @@
-#include "libchar/report/replay_json.hpp"
+#include "libchar/report/json/replay_json.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

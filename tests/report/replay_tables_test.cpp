@@ -1,13 +1,13 @@
-#include "libchar/report/detail/replay_tables.hpp"
+#include "libchar/report/detail/html/replay_tables.hpp"
 
 #include <catch2/catch.hpp>
 #include <regex>
 #include <string>
 
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/replay_html.hpp"
-#include "libchar/report/replay_markdown.hpp"
-#include "libchar/report/replay_text.hpp"
+#include "libchar/report/html/replay_html.hpp"
+#include "libchar/report/replay/replay_markdown.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

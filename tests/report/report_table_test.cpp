@@ -1,11 +1,11 @@
-#include "libchar/report/report_table.hpp"
+#include "libchar/report/text/report_table.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/report/json_report.hpp"
-#include "libchar/report/replay_json.hpp"
+#include "libchar/report/json/json_report.hpp"
+#include "libchar/report/json/replay_json.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

@@ -1,4 +1,4 @@
-#include "libchar/report/simulation_text.hpp"
+#include "libchar/report/text/simulation_text.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "libchar/report/fleet_report.hpp"
+#include "libchar/report/html/fleet_report.hpp"
 #include "tests/support/shared.hpp"
 
 namespace test {

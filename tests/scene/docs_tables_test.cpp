@@ -1,7 +1,7 @@
 // The tables of keys in docs/ are those that the readers and writers use. With LIBCHAR_WRITE_DOCS
 // set in the environment they are brought up to date.
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/reading_fields.hpp"
 #include "libchar/model/model_fields.hpp"

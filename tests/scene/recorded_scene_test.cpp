@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "libchar/scene/scene_writer.hpp"
+#include "libchar/scene/text/scene_writer.hpp"
 #include "tests/replay/scene_text.hpp"
 
 using namespace libchar;

@@ -3,10 +3,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/scene/scene_paths.hpp"
-#include "libchar/scene/scene_writer.hpp"
+#include "libchar/scene/text/scene_writer.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "tests/replay/scene_text.hpp"
 

@@ -1,4 +1,4 @@
-#include "libchar/scene/signal_text.hpp"
+#include "libchar/scene/text/signal_text.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -13,10 +13,10 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/chi_square.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fit/detail/dct_means.hpp"
-#include "libchar/fit/detail/low_pass.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/fit/detail/band/low_pass.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/spectrum/fft.hpp"
 #include "tests/support/algebra.hpp"
 

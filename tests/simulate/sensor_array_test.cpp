@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/moments.hpp"
+#include "libchar/core/numeric/moments.hpp"
 
 using namespace libchar;
 

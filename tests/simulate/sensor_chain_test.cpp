@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/core/moments.hpp"
+#include "libchar/core/numeric/moments.hpp"
 #include "tests/support/shared.hpp"
 #include "tests/support/table.hpp"
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/json.hpp"
 #include "libchar/spectrum/cross_spectrum.hpp"
 #include "libchar/spectrum/median_spectrum.hpp"
 #include "libchar/spectrum/spectrogram.hpp"

@@ -13,7 +13,7 @@
 #include "libchar/fusion/algorithms/least_squares.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/fusion/runner.hpp"
-#include "libchar/replay/detail/noise_level.hpp"
+#include "libchar/replay/detail/plan/noise_level.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "libchar/simulate/sensor_array.hpp"

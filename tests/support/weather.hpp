@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "libchar/fit/temperature.hpp"
+#include "libchar/fit/signs/temperature.hpp"
 #include "tests/support/noise.hpp"
 
 namespace test {

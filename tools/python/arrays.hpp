@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 
 namespace libchar_python {
 

@@ -12,17 +12,17 @@
 #include <utility>
 
 #include "arrays.hpp"
-#include "libchar/characterize/log_spectra.hpp"
-#include "libchar/core/output_files.hpp"
-#include "libchar/core/quantity_text.hpp"
+#include "libchar/characterize/curves/log_spectra.hpp"
+#include "libchar/core/file/output_files.hpp"
+#include "libchar/core/text/quantity_text.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/libchar.hpp"
 #include "libchar/log/recording_json.hpp"
-#include "libchar/report/replay_markdown.hpp"
+#include "libchar/report/replay/replay_markdown.hpp"
 #include "libchar/report/report_files.hpp"
-#include "libchar/scene/fault_text.hpp"
 #include "libchar/scene/recorded_scene.hpp"
-#include "libchar/scene/signal_text.hpp"
+#include "libchar/scene/text/fault_text.hpp"
+#include "libchar/scene/text/signal_text.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar_python {

@@ -7,17 +7,17 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libchar/characterize/characterization_check.hpp"
+#include "libchar/characterize/compare/characterization_check.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/text_table.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/replay/comparison.hpp"
 #include "libchar/replay/comparison_check.hpp"
-#include "libchar/report/characterization_comparison_text.hpp"
-#include "libchar/report/comparison_text.hpp"
+#include "libchar/report/compare/characterization_comparison_text.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

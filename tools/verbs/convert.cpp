@@ -10,8 +10,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/text.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/formats.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"

@@ -7,11 +7,11 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/lot/device_batches.hpp"
-#include "libchar/report/fleet_comparison_text.hpp"
+#include "libchar/report/compare/fleet_comparison_text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/readable.hpp"
-#include "libchar/core/shell_word.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/jobs.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "reading_options.hpp"

@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/output_files.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/output_files.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
-#include "libchar/report/fleet_report.hpp"
+#include "libchar/report/html/fleet_report.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

@@ -7,9 +7,9 @@
 
 #include "analysis_options.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/shell_word.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/status.hpp"
 #include "libchar/fleet/sums.hpp"

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/thread_limit.hpp"
+#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/run_unit.hpp"
 #include "libchar/fleet/status.hpp"

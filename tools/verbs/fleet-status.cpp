@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/readable.hpp"
-#include "libchar/core/shell_word.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/status.hpp"

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/whole_file.hpp"
-#include "libchar/report/fuse_report.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/report/replay/fuse_report.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 #include "writing_options.hpp"

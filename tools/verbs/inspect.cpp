@@ -7,10 +7,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/log_files.hpp"
-#include "libchar/core/shell_word.hpp"
+#include "libchar/core/file/log_files.hpp"
+#include "libchar/core/text/shell_word.hpp"
 #include "libchar/log/inspection.hpp"
-#include "libchar/report/inspection_text.hpp"
+#include "libchar/report/text/inspection_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/text_table.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "libchar/export/exports.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
-#include "libchar/report/model_text.hpp"
+#include "libchar/report/text/model_text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

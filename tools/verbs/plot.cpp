@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <memory>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/output_files.hpp"
-#include "libchar/core/quantity_text.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/file/output_files.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/quantity_text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/figure/draw_figure.hpp"
 #include "libchar/figure/figure_data.hpp"
 #include "libchar/figure/make_figure.hpp"

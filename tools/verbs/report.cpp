@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/whole_file.hpp"
-#include "libchar/report/report_table.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/report/text/report_table.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

@@ -8,11 +8,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document/result_check.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/result_check.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/core/process/version.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 #include "rerun.hpp"
 #include "verb.hpp"
 

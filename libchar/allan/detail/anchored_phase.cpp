@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/allan/detail/difference_kernels.hpp"
-#include "libchar/core/lanes.hpp"
-#include "libchar/core/present.hpp"
+#include "libchar/allan/detail/kernels/difference_kernels.hpp"
+#include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/numeric/present.hpp"
 
 namespace libchar {
 namespace {

@@ -15,7 +15,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "libchar/allan/detail/lag_sum.hpp"
+#include "libchar/allan/detail/kernels/lag_sum.hpp"
 #include "libchar/allan/detail/term_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
 

@@ -20,9 +20,9 @@
 #include <cstring>
 #include <vector>
 
-#include "libchar/allan/detail/eight_lanes.hpp"
 #include "libchar/allan/detail/family.hpp"
-#include "libchar/core/lanes.hpp"
+#include "libchar/allan/detail/kernels/eight_lanes.hpp"
+#include "libchar/core/numeric/lanes.hpp"
 
 namespace libchar {
 namespace {

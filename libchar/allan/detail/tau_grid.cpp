@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "libchar/allan/detail/family.hpp"
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "libchar/allan/detail/family.hpp"
-#include "libchar/core/lanes.hpp"
+#include "libchar/core/numeric/lanes.hpp"
 
 namespace libchar {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/numeric/interval.hpp"
 
 namespace libchar {
 

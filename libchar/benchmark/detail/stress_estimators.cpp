@@ -10,7 +10,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/benchmark/detail/stress_cells.hpp"
 #include "libchar/benchmark/detail/stress_records.hpp"
-#include "libchar/core/moments.hpp"
+#include "libchar/core/numeric/moments.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/random.hpp"
 #include "libchar/spectrum/fft.hpp"

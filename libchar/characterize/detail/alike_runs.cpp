@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/characterize/runs.hpp"
+#include "libchar/characterize/compare/runs.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 namespace {

@@ -15,12 +15,12 @@
 #include "libchar/allan/confidence.hpp"
 #include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/present.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/fit/motion.hpp"
+#include "libchar/core/numeric/present.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
-#include "libchar/fit/shaped_curves.hpp"
+#include "libchar/fit/signs/motion.hpp"
 #include "libchar/spectrum/log_spectrum.hpp"
 
 namespace libchar {

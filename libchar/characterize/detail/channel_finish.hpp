@@ -8,7 +8,7 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/detail/leaf.hpp"
-#include "libchar/fit/allan_fit.hpp"
+#include "libchar/fit/curve/allan_fit.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
 
 namespace libchar {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/characterize/detail/channel_stage.hpp"
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/log/read.hpp"
 
 namespace libchar {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "libchar/core/present.hpp"
+#include "libchar/core/numeric/present.hpp"
 #include "libchar/fit/remedies.hpp"
 
 namespace libchar {

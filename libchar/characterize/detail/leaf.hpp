@@ -8,8 +8,8 @@
 
 #include "libchar/allan/noise_type.hpp"
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/core/leaf_tree.hpp"
-#include "libchar/fit/record_sums.hpp"
+#include "libchar/core/numeric/leaf_tree.hpp"
+#include "libchar/fit/record/record_sums.hpp"
 #include "libchar/spectrum/welch_sums.hpp"
 
 namespace libchar {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/fit/motion.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/signs/motion.hpp"
 
 namespace libchar {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
-#include "libchar/fit/mean_meter.hpp"
+#include "libchar/fit/record/mean_meter.hpp"
 
 namespace libchar {
 

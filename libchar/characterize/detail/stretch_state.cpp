@@ -3,7 +3,7 @@
 #include <bit>
 #include <utility>
 
-#include "libchar/core/free_memory.hpp"
+#include "libchar/core/process/free_memory.hpp"
 #include "libchar/log/reading_fields.hpp"
 
 namespace libchar {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "libchar/core/readable.hpp"
-#include "libchar/core/term_cells.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

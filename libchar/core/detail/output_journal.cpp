@@ -15,10 +15,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/json.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/whole_file.hpp"
 
 namespace libchar {
 namespace {

@@ -14,9 +14,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/term_cells.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/term_cells.hpp"
 
 namespace libchar {
 namespace {

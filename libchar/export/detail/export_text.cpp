@@ -6,11 +6,11 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/term_cells.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/core/process/version.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/term_cells.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/export/detail/consumer_rows.hpp"
 
 namespace libchar {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 
 namespace libchar {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"

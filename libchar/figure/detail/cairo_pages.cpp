@@ -15,9 +15,9 @@
 #include <memory>
 #include <numbers>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/version.hpp"
+#include "libchar/core/process/version.hpp"
+#include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
 namespace {

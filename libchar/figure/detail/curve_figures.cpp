@@ -10,8 +10,8 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/term_cells.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/term_cells.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 
 namespace libchar {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/pattern.hpp"
-#include "libchar/core/spelling.hpp"
+#include "libchar/core/text/pattern.hpp"
+#include "libchar/core/text/spelling.hpp"
 
 namespace libchar {
 

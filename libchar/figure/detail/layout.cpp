@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/sheet.hpp"
 
 namespace libchar {

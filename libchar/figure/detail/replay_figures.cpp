@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
-#include "libchar/figure/detail/replay_report.hpp"
+#include "libchar/figure/detail/sources/replay_report.hpp"
 
 namespace libchar {
 namespace {

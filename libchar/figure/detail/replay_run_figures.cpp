@@ -7,10 +7,10 @@
 #include <numeric>
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/figure/detail/replay_figures.hpp"
-#include "libchar/figure/detail/replay_report.hpp"
+#include "libchar/figure/detail/sources/replay_report.hpp"
 
 namespace libchar {
 namespace {

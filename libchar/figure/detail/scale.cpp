@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 namespace {

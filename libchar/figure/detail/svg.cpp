@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libchar/core/markup.hpp"
+#include "libchar/core/text/markup.hpp"
 #include "libchar/figure/detail/drawing.hpp"
 
 namespace libchar {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/figure/detail/drawing.hpp"
 
 namespace libchar {

@@ -1,7 +1,7 @@
 #include "libchar/fleet/detail/log_digest.hpp"
 
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/sha256.hpp"
 
 namespace libchar {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 
 namespace libchar {

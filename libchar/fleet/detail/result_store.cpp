@@ -14,9 +14,9 @@
 
 #include "libchar/characterize/stretches.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/file_text.hpp"
-#include "libchar/core/sha256.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/file/whole_file.hpp"
 
 namespace libchar {
 namespace {

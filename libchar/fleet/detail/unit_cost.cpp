@@ -11,8 +11,8 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/nameless_file.hpp"
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/nameless_file.hpp"
+#include "libchar/core/file/sha256.hpp"
 
 namespace libchar {
 namespace {

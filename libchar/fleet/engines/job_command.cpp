@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/shell_word.hpp"
+#include "libchar/core/text/shell_word.hpp"
 #include "libchar/fleet/engines/engine_files.hpp"
 
 namespace libchar {

@@ -24,7 +24,7 @@
 #include <array>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/one_factor.hpp"
+#include "libchar/fusion/detail/variances/one_factor.hpp"
 
 namespace libchar::fusion {
 

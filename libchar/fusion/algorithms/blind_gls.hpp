@@ -11,8 +11,8 @@
 #include <array>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/one_factor.hpp"
-#include "libchar/fusion/detail/pair_covariance.hpp"
+#include "libchar/fusion/detail/variances/one_factor.hpp"
+#include "libchar/fusion/detail/variances/pair_covariance.hpp"
 
 namespace libchar::fusion {
 

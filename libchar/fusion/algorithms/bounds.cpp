@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "libchar/fusion/detail/weighted_mean.hpp"
+#include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "libchar/core/dense.hpp"
+#include "libchar/core/numeric/dense.hpp"
 
 namespace libchar::fusion {
 namespace {

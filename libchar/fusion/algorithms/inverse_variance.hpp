@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/general_mean.hpp"
+#include "libchar/fusion/detail/variances/general_mean.hpp"
 
 namespace libchar::fusion {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <string>
 
-#include "libchar/core/dense.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/error_weights.hpp"
-#include "libchar/fusion/detail/weighted_mean.hpp"
+#include "libchar/core/numeric/dense.hpp"
+#include "libchar/fusion/detail/variances/error_weights.hpp"
+#include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
 namespace {

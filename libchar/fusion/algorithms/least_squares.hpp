@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/triangle.hpp"
+#include "libchar/fusion/detail/variances/triangle.hpp"
 
 namespace libchar::fusion {
 

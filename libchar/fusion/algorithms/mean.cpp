@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "libchar/fusion/detail/weighted_mean.hpp"
+#include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
 

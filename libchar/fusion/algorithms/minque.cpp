@@ -4,7 +4,7 @@
 #include <numeric>
 #include <string>
 
-#include "libchar/fusion/detail/weighted_mean.hpp"
+#include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/fault_detector.hpp"
-#include "libchar/fusion/detail/fault_watch.hpp"
-#include "libchar/fusion/detail/reweighted_matrix.hpp"
-#include "libchar/fusion/detail/reweighted_variances.hpp"
+#include "libchar/fusion/detail/fault/fault_detector.hpp"
+#include "libchar/fusion/detail/fault/fault_watch.hpp"
+#include "libchar/fusion/detail/variances/reweighted_matrix.hpp"
+#include "libchar/fusion/detail/variances/reweighted_variances.hpp"
 
 namespace libchar::fusion {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/fusion/detail/weighted_mean.hpp"
+#include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/pair_moments.hpp"
+#include "libchar/fusion/detail/variances/pair_moments.hpp"
 
 namespace libchar::fusion {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/network_training.hpp"
+#include "libchar/fusion/detail/network/network_training.hpp"
 
 namespace libchar::fusion {
 

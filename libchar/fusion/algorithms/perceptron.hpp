@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/tanh_network.hpp"
+#include "libchar/fusion/detail/network/tanh_network.hpp"
 #include "libchar/fusion/detail/uniform.hpp"
 
 namespace libchar::fusion {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fusion/detail/weighted_mean.hpp"
+#include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
 

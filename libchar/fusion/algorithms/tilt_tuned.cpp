@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar::fusion {
 namespace {

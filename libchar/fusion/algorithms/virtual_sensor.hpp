@@ -23,8 +23,8 @@
 #include <memory>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/bias_filter.hpp"
-#include "libchar/fusion/detail/bias_smoother.hpp"
+#include "libchar/fusion/detail/bias/bias_filter.hpp"
+#include "libchar/fusion/detail/bias/bias_smoother.hpp"
 
 namespace libchar::fusion {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/median.hpp"
+#include "libchar/core/numeric/median.hpp"
 
 namespace libchar::fusion {
 namespace {

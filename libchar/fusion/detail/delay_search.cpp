@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "libchar/core/lanes.hpp"
+#include "libchar/core/numeric/lanes.hpp"
 
 namespace libchar::fusion {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/table_plan.hpp"
 #include "libchar/log/binary/stamps.hpp"
 

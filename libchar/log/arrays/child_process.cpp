@@ -13,7 +13,7 @@
 #include <cstring>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/sanitizer.hpp"
+#include "libchar/core/process/sanitizer.hpp"
 
 namespace libchar {
 namespace {

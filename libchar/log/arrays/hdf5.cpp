@@ -7,7 +7,7 @@
 #include <span>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
 #include "libchar/log/arrays/child_process.hpp"
 #include "libchar/log/arrays/hdf5_file.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/packed_array.hpp"
 #include "libchar/log/binary/file.hpp"
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
 #include "libchar/log/arrays/packed_array.hpp"
 #include "libchar/log/arrays/zip.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "libchar/core/crc32.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/crc32.hpp"
 #include "libchar_have.hpp"
 #if LIBCHAR_HAVE_ZLIB
 #include <zlib.h>

@@ -9,9 +9,9 @@
 #include <optional>
 #include <set>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/time/time_column.hpp"

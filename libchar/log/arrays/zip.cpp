@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include "libchar/core/sha256.hpp"
+#include "libchar/core/file/sha256.hpp"
 
 namespace libchar {
 

@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/utf8.hpp"
+#include "libchar/core/text/utf8.hpp"
 #include "libchar/log/binary/wrong_start.hpp"
 
 namespace libchar {

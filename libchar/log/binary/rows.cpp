@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/log/binary/file_hash.hpp"
 #include "libchar/log/binary/stamps.hpp"
 #include "libchar/log/detail/channel_choice.hpp"

@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <unordered_set>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
+#include "libchar/core/document/fields.hpp"
+#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/fields.hpp"
-#include "libchar/core/json_reader.hpp"
-#include "libchar/core/output_files.hpp"
-#include "libchar/core/spelling.hpp"
+#include "libchar/core/file/output_files.hpp"
+#include "libchar/core/text/spelling.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/reading_fields.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/log/binary/number_type.hpp"
 
 namespace libchar {

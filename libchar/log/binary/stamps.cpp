@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "libchar/core/thread_limit.hpp"
+#include "libchar/core/process/thread_limit.hpp"
 
 namespace libchar::csv {
 

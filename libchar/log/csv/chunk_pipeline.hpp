@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "libchar/log/csv/chunk_reader.hpp"
-#include "libchar/log/csv/plan.hpp"
-#include "libchar/log/csv/rows.hpp"
+#include "libchar/log/csv/head/plan.hpp"
+#include "libchar/log/csv/rows/rows.hpp"
 
 namespace libchar::csv {
 

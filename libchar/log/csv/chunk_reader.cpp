@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-#include "libchar/log/csv/rows.hpp"
+#include "libchar/log/csv/rows/rows.hpp"
 
 namespace libchar::csv {
 namespace {

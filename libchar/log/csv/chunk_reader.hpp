@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/sha256.hpp"
-#include "libchar/log/csv/dialect.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/log/csv/head/dialect.hpp"
 #include "libchar/log/csv/unpacker.hpp"
 
 namespace libchar::csv {

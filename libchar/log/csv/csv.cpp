@@ -11,15 +11,15 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/thread_limit.hpp"
+#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/chunk_pipeline.hpp"
 #include "libchar/log/csv/chunk_reader.hpp"
-#include "libchar/log/csv/dialect.hpp"
-#include "libchar/log/csv/header.hpp"
+#include "libchar/log/csv/head/dialect.hpp"
+#include "libchar/log/csv/head/header.hpp"
+#include "libchar/log/csv/head/plan.hpp"
 #include "libchar/log/csv/pivot.hpp"
-#include "libchar/log/csv/plan.hpp"
-#include "libchar/log/csv/rows.hpp"
+#include "libchar/log/csv/rows/rows.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/detail/odd_values.hpp"
 

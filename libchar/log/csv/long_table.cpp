@@ -7,10 +7,10 @@
 #include <cmath>
 #include <map>
 
-#include "libchar/core/median.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/log/csv/stamps.hpp"
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/log/csv/rows/stamps.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 
 namespace libchar::csv {

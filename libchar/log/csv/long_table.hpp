@@ -1,8 +1,8 @@
 #pragma once
 // Tables in long form, whose rows say whose they are: found, and told apart by options.
 
-#include "libchar/log/csv/columns.hpp"
-#include "libchar/log/csv/dialect.hpp"
+#include "libchar/log/csv/head/columns.hpp"
+#include "libchar/log/csv/head/dialect.hpp"
 
 namespace libchar::csv {
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/recording.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/window.hpp"
 #include "libchar/log/flight/dataflash_units.hpp"
 

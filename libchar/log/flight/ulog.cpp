@@ -9,9 +9,9 @@
 #include <cmath>
 #include <optional>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/flight/ulog_listing.hpp"
 #include "libchar/log/flight/ulog_units.hpp"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/wrong_start.hpp"
 
 namespace libchar {

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/wrong_start.hpp"
 #include "libchar/log/ros/byte_reader.hpp"
 #include "libchar/log/ros/decompress.hpp"

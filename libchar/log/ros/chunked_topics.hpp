@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/log/ros/message_topics.hpp"
+#include "libchar/log/ros/messages/message_topics.hpp"
 
 namespace libchar {
 

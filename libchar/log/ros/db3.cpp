@@ -11,12 +11,12 @@
 #include <memory>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/wrong_start.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/decompress.hpp"
-#include "libchar/log/ros/message_topics.hpp"
+#include "libchar/log/ros/messages/message_topics.hpp"
 #include "libchar/log/ros/sqlite_file.hpp"
 #include "libchar_have.hpp"
 #if LIBCHAR_HAVE_SQLITE

@@ -16,7 +16,7 @@
 #include <bzlib.h>
 #endif
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/mcap_scan.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "libchar/core/crc32.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/file/crc32.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/wrong_start.hpp"
 #include "libchar/log/ros/byte_reader.hpp"
 #include "libchar/log/ros/decompress.hpp"

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/log_files.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/file/log_files.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
 
 namespace libchar {

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <string>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

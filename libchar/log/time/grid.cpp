@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/lanes.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 namespace {

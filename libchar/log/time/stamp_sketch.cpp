@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "libchar/core/lanes.hpp"
-#include "libchar/core/median.hpp"
+#include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/numeric/median.hpp"
 
 namespace libchar {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/median.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/column_name.hpp"

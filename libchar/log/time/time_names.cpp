@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

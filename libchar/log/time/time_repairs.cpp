@@ -9,9 +9,9 @@
 #include <cmath>
 #include <utility>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/log/time/grid.hpp"
 
 namespace libchar {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/time/time_column.hpp"

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/pattern.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/pattern.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/log_files.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/file/log_files.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/file_hash.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/odd_values.hpp"

@@ -6,9 +6,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "libchar/core/csv_cell.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/csv_cell.hpp"
 
 namespace libchar {
 namespace {

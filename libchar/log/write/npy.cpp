@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/decimal.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/write/value_writer.hpp"

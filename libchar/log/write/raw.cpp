@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/write/value_writer.hpp"

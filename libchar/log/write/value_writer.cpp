@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <limits>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/nameless_file.hpp"
+#include "libchar/core/file/nameless_file.hpp"
+#include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
 namespace {

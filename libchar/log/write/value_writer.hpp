@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/whole_file.hpp"
+#include "libchar/core/file/whole_file.hpp"
 #include "libchar/log/binary/number_type.hpp"
 
 namespace libchar {

@@ -4,7 +4,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "libchar/core/pattern.hpp"
+#include "libchar/core/text/pattern.hpp"
 
 namespace libchar {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

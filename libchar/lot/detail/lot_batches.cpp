@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/lot/detail/grouped_effects.hpp"
+#include "libchar/lot/detail/statistics/grouped_effects.hpp"
 
 namespace libchar {
 namespace {

@@ -13,8 +13,8 @@
 #include <map>
 #include <vector>
 
-#include "libchar/core/median.hpp"
-#include "libchar/lot/detail/length_class.hpp"
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/lot/detail/statistics/length_class.hpp"
 
 namespace libchar {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/random_effects.hpp"
-#include "libchar/lot/detail/lognormal_effects.hpp"
+#include "libchar/core/numeric/random_effects.hpp"
+#include "libchar/lot/detail/statistics/lognormal_effects.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {

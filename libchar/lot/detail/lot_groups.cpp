@@ -9,8 +9,8 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "libchar/core/pattern.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/pattern.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/lot/device_batches.hpp"
 

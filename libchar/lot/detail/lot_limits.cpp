@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 
 namespace libchar {
 namespace {

@@ -16,10 +16,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/lot/detail/grouped_effects.hpp"
 #include "libchar/lot/detail/lot_figures.hpp"
 #include "libchar/lot/detail/member_recordings.hpp"
-#include "libchar/lot/detail/temperature_lines.hpp"
+#include "libchar/lot/detail/statistics/grouped_effects.hpp"
+#include "libchar/lot/detail/statistics/temperature_lines.hpp"
 
 namespace libchar {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/random_effects.hpp"
+#include "libchar/core/numeric/random_effects.hpp"
 #include "libchar/lot/detail/lot_groups.hpp"
 #include "libchar/lot/detail/member_recordings.hpp"
 #include "libchar/lot/fleet_lot.hpp"

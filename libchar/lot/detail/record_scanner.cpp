@@ -3,8 +3,8 @@
 #include <charconv>
 #include <limits>
 
-#include "libchar/core/document.hpp"
-#include "libchar/core/utf8.hpp"
+#include "libchar/core/document/document.hpp"
+#include "libchar/core/text/utf8.hpp"
 
 namespace libchar {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/coefficient_fields.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/model/detail/noise_units.hpp"
 

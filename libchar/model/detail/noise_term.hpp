@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/model/sensor_model.hpp"
 
 namespace libchar {

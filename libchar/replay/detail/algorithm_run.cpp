@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/median.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/median.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
-#include "libchar/replay/detail/timeline.hpp"
+#include "libchar/replay/detail/tracks/timeline.hpp"
 
 namespace libchar {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/fusion/runner.hpp"
-#include "libchar/replay/detail/plan.hpp"
+#include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/fusion_file.hpp"
 
 namespace libchar {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "libchar/fusion/runner.hpp"
-#include "libchar/replay/detail/plan.hpp"
+#include "libchar/replay/detail/plan/plan.hpp"
 
 namespace libchar {
 

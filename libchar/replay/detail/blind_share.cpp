@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "libchar/fusion/why_not.hpp"
-#include "libchar/replay/detail/plan.hpp"
+#include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/error_meter.hpp"
 
 namespace libchar {

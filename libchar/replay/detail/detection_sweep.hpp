@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/fusion/runner.hpp"
-#include "libchar/replay/detail/plan.hpp"
+#include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/fault_answers.hpp"
 #include "libchar/replay/replay_result.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/dense.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/dense.hpp"
 #include "libchar/replay/detail/partial_scores.hpp"
 
 namespace libchar {

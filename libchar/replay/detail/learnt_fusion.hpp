@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "libchar/fusion/array.hpp"
-#include "libchar/replay/detail/aligned_pass.hpp"
-#include "libchar/replay/detail/plan.hpp"
-#include "libchar/replay/detail/sensor_knowledge.hpp"
-#include "libchar/replay/detail/step_noise.hpp"
+#include "libchar/replay/detail/align/aligned_pass.hpp"
+#include "libchar/replay/detail/plan/plan.hpp"
+#include "libchar/replay/detail/plan/sensor_knowledge.hpp"
+#include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/fusion_file.hpp"
 
 namespace libchar {

@@ -14,8 +14,8 @@
 #include <limits>
 #include <vector>
 
-#include "libchar/core/distributions.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 
 namespace libchar {
 

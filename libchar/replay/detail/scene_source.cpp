@@ -7,8 +7,8 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/spelling.hpp"
-#include "libchar/replay/detail/resampled.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/replay/detail/align/resampled.hpp"
 
 namespace libchar {
 namespace {

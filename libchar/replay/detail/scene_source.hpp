@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/progress.hpp"
+#include "libchar/core/process/progress.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/scene/scene.hpp"
 

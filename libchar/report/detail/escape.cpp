@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/markup.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/markup.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 std::string html_text(std::string_view text) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
 
 namespace libchar {
 

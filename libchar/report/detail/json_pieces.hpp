@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/interval.hpp"
-#include "libchar/core/json.hpp"
+#include "libchar/core/document/json.hpp"
+#include "libchar/core/numeric/interval.hpp"
 
 namespace libchar {
 

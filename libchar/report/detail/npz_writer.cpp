@@ -6,9 +6,9 @@
 #include <bit>
 #include <limits>
 
-#include "libchar/core/crc32.hpp"
-#include "libchar/core/text.hpp"
-#include "libchar/core/utf8.hpp"
+#include "libchar/core/file/crc32.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/text/utf8.hpp"
 
 namespace libchar {
 namespace {

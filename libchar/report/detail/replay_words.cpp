@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/readable.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

@@ -1,7 +1,7 @@
 #include "libchar/report/detail/report_rows.hpp"
 
-#include "libchar/characterize/curve_document.hpp"
-#include "libchar/core/coefficient_fields.hpp"
+#include "libchar/characterize/curves/curve_document.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

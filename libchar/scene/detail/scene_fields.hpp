@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/fields.hpp"
+#include "libchar/core/document/fields.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {

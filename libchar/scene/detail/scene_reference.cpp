@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_sensors.hpp"

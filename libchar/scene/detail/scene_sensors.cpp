@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/pattern.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/pattern.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"

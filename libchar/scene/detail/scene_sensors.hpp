@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/schema.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_paths.hpp"
 

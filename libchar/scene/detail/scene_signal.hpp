@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/document.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/simulate/signal.hpp"
 
 namespace libchar {

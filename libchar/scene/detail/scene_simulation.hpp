@@ -1,7 +1,7 @@
 #pragma once
 // The block `simulate` of a scene file.
 
-#include "libchar/core/schema.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_paths.hpp"
 

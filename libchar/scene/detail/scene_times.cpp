@@ -9,13 +9,13 @@
 #include <iterator>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_sensors.hpp"
 #include "libchar/scene/detail/scene_simulation.hpp"
 #include "libchar/scene/detail/scene_values.hpp"
-#include "libchar/scene/preparation_check.hpp"
+#include "libchar/scene/text/preparation_check.hpp"
 
 namespace libchar {
 namespace {

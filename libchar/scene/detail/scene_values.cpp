@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libchar/core/decimal.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 
 namespace libchar {

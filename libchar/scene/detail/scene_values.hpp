@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/entry.hpp"
-#include "libchar/core/schema.hpp"
+#include "libchar/core/document/entry.hpp"
+#include "libchar/core/document/schema.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {

@@ -30,7 +30,7 @@
 #include <complex>
 #include <numbers>
 
-#include "libchar/core/dense.hpp"
+#include "libchar/core/numeric/dense.hpp"
 #include "libchar/simulate/detail/sections.hpp"
 
 namespace libchar {

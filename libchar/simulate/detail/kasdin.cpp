@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/lanes.hpp"
+#include "libchar/core/numeric/lanes.hpp"
 
 namespace libchar {
 namespace {

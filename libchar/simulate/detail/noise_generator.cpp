@@ -19,8 +19,8 @@
 #include <numbers>
 #include <variant>
 
-#include "libchar/core/decimal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/simulate/detail/kasdin.hpp"
 
 namespace libchar {

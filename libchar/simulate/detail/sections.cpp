@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "libchar/core/lanes.hpp"
+#include "libchar/core/numeric/lanes.hpp"
 
 namespace libchar {
 namespace {

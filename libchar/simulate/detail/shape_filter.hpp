@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/noise_shape.hpp"
+#include "libchar/core/numeric/noise_shape.hpp"
 
 namespace libchar {
 

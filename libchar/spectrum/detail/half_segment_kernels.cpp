@@ -1,6 +1,6 @@
 #include "libchar/spectrum/detail/half_segment_kernels.hpp"
 
-#include "libchar/core/lanes.hpp"
+#include "libchar/core/numeric/lanes.hpp"
 
 namespace libchar::half_segments {
 namespace {

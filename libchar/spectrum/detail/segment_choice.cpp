@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/present.hpp"
+#include "libchar/core/numeric/present.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 
 namespace libchar::welch_detail {

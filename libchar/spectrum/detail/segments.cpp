@@ -18,8 +18,8 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/lanes.hpp"
-#include "libchar/core/work.hpp"
+#include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/process/work.hpp"
 
 namespace libchar::welch_detail {
 namespace {

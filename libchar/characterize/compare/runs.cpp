@@ -1,0 +1,297 @@
+// Whether runs have one set of coefficients: T = 2 (sum of the runs' ln L with their own - with common coefficients), the shape and
+// band held. Its distribution is not chi-square (coefficients at zero, bins of one degree of freedom), so it is simulated: runs of
+// the same bins from the common coefficients, energies as the likelihood has them, until ten are as large (Besag & Clifford,
+// Biometrika 78 (1991) 301). Then the run of the largest ratio is named where that is beyond the largest of any by chance, left out,
+// and the rest tested again.
+// Turn-on bias: means of runs scatter by the noise (the Allan deviation of the run's length) and by the spread that is sought
+// (core/random_effects.hpp). What the bias does between runs that were not switched off is in the spread as well.
+#include "libchar/characterize/compare/runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/characterize/detail/alike_runs.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/simulate/random.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr int kEnough =
+    10;  ///< simulated sums as large as the observed one, after which p is known well enough
+
+/// chi-square / dof: of normal deviates, or by Wilson & Hilferty where there are many.
+double scaled_chi_square(double dof, DeviateStream& random) {
+  if (dof > 64 || dof != std::floor(dof)) {
+    const double c = 2 / (9 * dof);
+    const double root = 1 - c + random.normal() * std::sqrt(c);
+    return root * root * root;
+  }
+  double sum = 0;
+  for (int i = 0; i < static_cast<int>(dof); ++i) {
+    const double z = random.normal();
+    sum += z * z;
+  }
+  return sum / dof;
+}
+
+RunBins simulated(const RunBins& runs, const Mixture& theta, DeviateStream& random) {
+  RunBins out = runs;
+  for (auto& bins : out) {
+    const std::vector<double> expected = expected_energy(bins, theta);
+    for (std::size_t j = 0; j < bins.size(); ++j)
+      bins[j].energy = expected[j] * std::max(1e-12, scaled_chi_square(bins[j].dof, random));
+  }
+  return out;
+}
+
+/// Ratios of some runs, and how often chance makes as large ones.
+struct RunsTest {
+  RunRatios ratios;
+  double p = 1;
+  int simulations = 0;
+  std::vector<double> run_p;
+};
+
+RunsTest tested(const RunBins& runs,
+                const std::array<bool, kTerms>& terms,
+                const PoolOptions& options,
+                DeviateStream& random) {
+  RunsTest out;
+  out.ratios = run_ratios(runs, terms);
+  int made = 0, larger = 0;
+  std::vector<int> exceeded(runs.size());
+  while (made < options.replicates && larger < kEnough) {
+    const RunRatios chance = run_ratios(simulated(runs, out.ratios.common, random), terms);
+    const double largest = *std::max_element(chance.run.begin(), chance.run.end());
+    ++made;
+    larger += chance.total >= out.ratios.total ? 1 : 0;
+    for (std::size_t r = 0; r < runs.size(); ++r)
+      exceeded[r] += largest >= out.ratios.run[r] ? 1 : 0;
+  }
+  out.simulations = made;
+  // With ten as large the last one made is one of them: without the observed one in the count.
+  out.p = larger == kEnough ? static_cast<double>(larger) / made : (1.0 + larger) / (1.0 + made);
+  for (const int count : exceeded) out.run_p.push_back((1.0 + count) / (1.0 + made));
+  return out;
+}
+
+/// Names runs one by one: an unlike one bends the common coefficients, and all others would look unlike beside it.
+void name_unlike(const PooledFit& pooled,
+                 const PoolOptions& options,
+                 RunsTest test,
+                 DeviateStream& random,
+                 PooledChannel& out) {
+  RunBins rest = pooled.runs;
+  std::vector<std::size_t> place(rest.size());
+  std::iota(place.begin(), place.end(), std::size_t{0});
+  while (test.p < options.probability && rest.size() > 2) {
+    const auto worst = static_cast<std::size_t>(
+        std::max_element(test.ratios.run.begin(), test.ratios.run.end()) - test.ratios.run.begin());
+    if (!(test.run_p[worst] < options.probability)) break;
+    out.runs[place[worst]].differs = true;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(worst));
+    place.erase(place.begin() + static_cast<std::ptrdiff_t>(worst));
+    test = tested(rest, pooled.terms, options, random);
+  }
+}
+
+/// Fills the ratios, their p, and who differs.
+void test_consistency(const PooledFit& pooled, const PoolOptions& options, PooledChannel& out) {
+  DeviateStream random({options.seed, 0, Purpose::bootstrap});
+  const RunsTest all = tested(pooled.runs, pooled.terms, options, random);
+  out.ratio = all.ratios.total;
+  out.p = all.p;
+  out.simulations = all.simulations;
+  out.consistent = !(all.p < options.probability);
+  for (std::size_t r = 0; r < out.runs.size(); ++r) {
+    out.runs[r].ratio = all.ratios.run[r];
+    out.runs[r].p = all.run_p[r];
+  }
+  if (!out.consistent) name_unlike(pooled, options, all, random, out);
+}
+
+/// Coefficients of runs that do not share them: a mean of unlike things, known no better than they scatter.
+void admit_unlike(const PooledFit& pooled, PooledChannel& out) {
+  const double dof = static_cast<double>(
+      (out.runs.size() - 1) *
+      static_cast<std::size_t>(std::count(pooled.terms.begin(), pooled.terms.end(), true)));
+  const double wider = std::sqrt(std::max(1.0, out.ratio / std::max(1.0, dof)));
+  widen_as_misfit(wider, out.fit);
+}
+
+/// Squared coefficients, with what was not detected at its upper limit.
+Mixture at_most(const NoiseFit& fit) {
+  Mixture theta = fit.theta;
+  for (std::size_t t = 0; t < kTerms; ++t)
+    if (fit.term[t].upper95 && !fit.term[t].value)
+      theta[t] = std::max(theta[t], *fit.term[t].upper95 * *fit.term[t].upper95);
+  return theta;
+}
+
+/// Variance by which flicker moves the mean of a run, beyond its Allan variance there, when runs may lie a year apart: what its
+/// density B²/(2 pi f) holds between 1/year and 1/length.
+double slower_flicker(const Mixture& theta, double length_s) {
+  constexpr double kYear = 3.15576e7;
+  return theta[static_cast<std::size_t>(Term::flicker)] / std::numbers::pi *
+         std::max(0.0, std::log(kYear / length_s));
+}
+
+void find_bias(std::span<const Characterization> runs, PooledChannel& out) {
+  std::vector<double> mean, least, most;
+  const Mixture limits = at_most(out.fit);
+  for (ChannelRun& run : out.runs) {
+    const ChannelResult& channel = *find_channel(runs[run.run], out.channel.name);
+    const double dt_s = 1 / channel.fit->rate_hz, m = static_cast<double>(channel.fit->samples);
+    run.mean = channel.quality.mean;
+    least.push_back(allan_variance(out.fit.theta, m, dt_s));
+    most.push_back(allan_variance(limits, m, dt_s) + slower_flicker(limits, m * dt_s));
+    run.mean_sd = std::sqrt(least.back());
+    mean.push_back(run.mean);
+  }
+  if (out.runs.size() < 2 || !(*std::min_element(least.begin(), least.end()) > 0)) return;
+  out.bias = random_effects(mean, least);
+  // Slow noise that was not detected may be there, and flicker goes on between the runs: nothing is claimed that they could have done.
+  const RandomEffects careful = random_effects(mean, most);
+  out.bias->spread_ci95.low = std::min(out.bias->spread_ci95.low, careful.spread_ci95.low);
+  out.bias->p = careful.p;
+}
+
+std::string files_of(const PooledChannel& channel, std::span<const Characterization> runs) {
+  std::string out;
+  for (const ChannelRun& run : channel.runs)
+    if (run.differs) out += (out.empty() ? "" : ", ") + runs[run.run].log.file;
+  return out;
+}
+
+std::string consistency_sentence(const PooledChannel& c, std::span<const Characterization> runs) {
+  const std::string figures = fmt::format("2 ln L rises by {} with coefficients of their own, {}",
+                                          number_text(c.ratio, 3),
+                                          probability_text(c.p, c.simulations));
+  if (c.consistent)
+    return fmt::format("One set of coefficients describes {} ({}).",
+                       c.runs.size() == 2 ? "both runs" : fmt::format("all {} runs", c.runs.size()),
+                       figures);
+  const std::string named = files_of(c, runs);
+  return fmt::format(
+      "The runs do not have one set of coefficients ({}); {}. The common ones are a mean of unlike "
+      "runs.",
+      figures,
+      named.empty() ? "none stands out alone" : "not like the rest: " + named);
+}
+
+std::string bias_sentence(const PooledChannel& c) {
+  const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
+  const RandomEffects& b = *c.bias;
+  if (b.spread_ci95.low > 0)
+    return fmt::format(
+        "Turn-on bias: {} {} [{}, {}] standard deviation from run to run, about a mean of {} {}.",
+        number_text(b.spread, 3),
+        unit,
+        number_text(b.spread_ci95.low, 3),
+        number_text(b.spread_ci95.high, 3),
+        number_text(b.mean),
+        unit);
+  return fmt::format(
+      "Turn-on bias: the means of the runs scatter no more than noise, slow noise that may not be "
+      "seen in a run included, lets expect ({}); its "
+      "spread is at most {} {} (97.5 %).",
+      probability_text(b.p),
+      number_text(b.spread_ci95.high, 3),
+      unit);
+}
+
+PooledChannel pooled_channel(std::span<const Characterization> runs,
+                             const Channel& channel,
+                             const std::vector<std::size_t>& fitted,
+                             const PoolOptions& options) {
+  PooledChannel out;
+  out.channel = channel;
+  std::vector<RunRecord> records;
+  double samples = 0, seconds = 0;
+  for (const std::size_t r : fitted) {
+    const NoiseFit& fit = *find_channel(runs[r], channel.name)->fit;
+    records.push_back({fit.bins, fit.samples});
+    samples += static_cast<double>(fit.samples);
+    seconds += static_cast<double>(fit.samples) / fit.rate_hz;
+    out.runs.push_back({});
+    out.runs.back().run = r;
+  }
+  FitOptions fit = options.fit;
+  fit.unit = channel.unit;
+  const PooledFit pooled = fit_pooled(records, samples / seconds, fit);
+  out.fit = pooled.fit;
+  if (records.size() >= 2) {
+    test_consistency(pooled, options, out);
+    if (!out.consistent) admit_unlike(pooled, out);
+    out.sentences.push_back(consistency_sentence(out, runs));
+  }
+  if (options.data == SampleKind::rate) find_bias(runs, out);
+  if (out.bias) out.sentences.push_back(bias_sentence(out));
+  return out;
+}
+
+std::string pool_verdict(const PooledRuns& pooled) {
+  std::vector<std::string> unlike;
+  for (const PooledChannel& c : pooled.channels)
+    if (!c.consistent) unlike.push_back(c.channel.name);
+  std::string out;
+  const std::size_t n = pooled.channels.size();
+  if (n == 0) return "No channel could be pooled.";
+  if (unlike.empty())
+    out = fmt::format("{} runs, one sensor: one set of coefficients describes {} in all of them.",
+                      pooled.runs.size(),
+                      n == 1 ? "the channel" : fmt::format("each of {} channels", n));
+  else
+    out = fmt::format("{} runs that do not have one set of coefficients for {}.",
+                      pooled.runs.size(),
+                      fmt::join(unlike, ", "));
+  std::size_t spread = 0;
+  for (const PooledChannel& c : pooled.channels) spread += c.bias && c.bias->spread_ci95.low > 0;
+  if (spread > 0)
+    out += fmt::format(" The bias changes from turn-on to turn-on in {} of {}.", spread, n);
+  return out;
+}
+
+}  // namespace
+
+PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& options) {
+  check_runs(runs);
+  PooledRuns out;
+  for (const Characterization& run : runs) {
+    const double rate = run.log.time.rate_hz;
+    out.runs.push_back({run.log.file,
+                        run.log.samples,
+                        rate > 0 ? static_cast<double>(run.log.samples) / rate : 0,
+                        rate});
+  }
+  for (const ChannelResult& first : runs[0].channels) {
+    std::vector<std::size_t> fitted;
+    for (std::size_t r = 0; r < runs.size(); ++r)
+      if (find_channel(runs[r], first.channel.name)->fit) fitted.push_back(r);
+    if (fitted.size() < 2) {
+      out.problems.push_back(fmt::format("{}: not pooled, it could be fitted in {} of {} runs",
+                                         first.channel.name,
+                                         fitted.size(),
+                                         runs.size()));
+      continue;
+    }
+    if (fitted.size() < runs.size())
+      out.problems.push_back(
+          fmt::format("{}: pooled over the {} of {} runs in which it could be fitted",
+                      first.channel.name,
+                      fitted.size(),
+                      runs.size()));
+    out.channels.push_back(pooled_channel(runs, first.channel, fitted, options));
+  }
+  out.verdict = pool_verdict(out);
+  return out;
+}
+
+}  // namespace libchar

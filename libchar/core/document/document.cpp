@@ -1,0 +1,265 @@
+#include "libchar/core/document/document.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "libchar/core/document/json_reader.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/utf8.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kMaxKey = 1024;
+constexpr std::size_t kMaxKeys = 10000;  // a map is searched key by key
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+Document scalar(Document::Kind kind, const std::string& text) {
+  Document node;
+  node.kind = kind;
+  node.text = text;
+  return node;
+}
+
+// What an unquoted scalar means: numbers as JSON has them; everything else stays a text.
+Document unquoted(const std::string& value) {
+  if (value == "true" || value == "false") {
+    Document node = scalar(Document::Kind::boolean, value);
+    node.boolean = value == "true";
+    return node;
+  }
+  if (value == "null" || value == "~") return scalar(Document::Kind::null, value);
+  const std::string_view magnitude = std::string_view(value).substr(value.starts_with('-') ? 1 : 0);
+  const bool octal = magnitude.size() > 1 && magnitude[0] == '0' && is_digit(magnitude[1]);
+  if (magnitude.empty() || !is_digit(magnitude[0]) || octal)
+    return scalar(Document::Kind::text, value);
+  const auto number = parse_double(value);
+  if (!number) return scalar(Document::Kind::text, value);
+  Document node = scalar(Document::Kind::number, value);
+  node.number = *number;
+  node.whole = magnitude.find_first_not_of("0123456789") == std::string_view::npos;
+  return node;
+}
+
+// Builds the tree from the parser's events, so that an alias is seen as an alias and never
+// followed.
+class Builder : public YAML::EventHandler {
+ public:
+  explicit Builder(const std::string& file) : file_(file) {}
+  Document take() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    check(mark, "", anchor);
+    put(mark, Document{});
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    refuse(mark, "aliases are not read", "*");
+  }
+  void OnScalar(const YAML::Mark& mark,
+                const std::string& tag,
+                YAML::anchor_t anchor,
+                const std::string& value) override {
+    const bool quoted = tag == "!";  // "!" marks a quoted text, "?" an unquoted one
+    check(mark, quoted ? "" : tag, anchor);
+    if (!quoted && value == "<<") refuse(mark, "merge keys are not read", value);
+    put(mark, quoted ? scalar(Document::Kind::text, value) : unquoted(value));
+  }
+  void OnSequenceStart(const YAML::Mark& mark,
+                       const std::string& tag,
+                       YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    check(mark, tag, anchor);
+    open(mark, Document::Kind::list);
+  }
+  void OnSequenceEnd() override { stack_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark,
+                  const std::string& tag,
+                  YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    check(mark, tag, anchor);
+    open(mark, Document::Kind::map);
+  }
+  void OnMapEnd() override { stack_.pop_back(); }
+
+ private:
+  struct Level {
+    Document* node = nullptr;
+    bool awaits_value = false;
+  };
+
+  [[noreturn]] void refuse(const YAML::Mark& mark, std::string what, std::string got) const {
+    throw Error({ErrorKind::input,
+                 "E0521",
+                 fmt::format("{}:{}:{}", file_, mark.line + 1, mark.column + 1),
+                 std::move(what),
+                 std::move(got),
+                 ""});
+  }
+  void check(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) const {
+    if (!tag.empty() && tag != "?") refuse(mark, "tags are not read", tag);
+    if (anchor != 0) refuse(mark, "anchors are not read", "&");
+  }
+
+  void add_key(const YAML::Mark& mark, Level& level, const std::string& key) {
+    if (key.size() > kMaxKey)
+      refuse(mark, fmt::format("a key is longer than {} characters", kMaxKey), key);
+    if (level.node->map.size() >= kMaxKeys)
+      refuse(mark, fmt::format("a map has more than {} keys", kMaxKeys), key);
+    if (level.node->find(key) != nullptr) refuse(mark, "a key stands twice", key);
+    level.node->map.push_back({key, mark.line + 1, mark.column + 1, {}});
+    level.awaits_value = true;
+  }
+
+  // Where the next value goes; nothing when it is a key.
+  Document* slot() {
+    if (stack_.empty()) return &root_;
+    Level& level = stack_.back();
+    if (level.node->kind == Document::Kind::list) return &level.node->list.emplace_back();
+    if (!level.awaits_value) return nullptr;
+    level.awaits_value = false;
+    return &level.node->map.back().value;
+  }
+
+  Document* put(const YAML::Mark& mark, Document value) {
+    value.line = mark.line + 1;
+    value.column = mark.column + 1;
+    Document* place = slot();
+    if (place == nullptr) {
+      add_key(mark, stack_.back(), value.text);
+      return nullptr;
+    }
+    *place = std::move(value);
+    return place;
+  }
+
+  void open(const YAML::Mark& mark, Document::Kind kind) {
+    if (stack_.size() >= kMaxDocumentDepth)
+      refuse(mark, fmt::format("is nested deeper than {} levels", kMaxDocumentDepth), "");
+    if (!stack_.empty() && stack_.back().node->kind == Document::Kind::map &&
+        !stack_.back().awaits_value)
+      refuse(mark, "a list or map cannot be a key", "");
+    stack_.push_back({put(mark, scalar(kind, "")), false});
+  }
+
+  const std::string& file_;
+  Document root_;
+  std::vector<Level> stack_;
+};
+
+[[noreturn]] void refuse_text(std::string where, std::string what) {
+  throw Error({ErrorKind::input, "E0522", std::move(where), std::move(what), "", ""});
+}
+
+void check_bytes(std::string_view text, const std::string& file) {
+  if (text.size() > kMaxDocumentBytes)
+    refuse_text(
+        file,
+        fmt::format("YAML of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes));
+  if (first_invalid_utf8(text) != std::string_view::npos)
+    refuse_text(fmt::format("{} (byte {})", file, first_invalid_utf8(text)), "is not valid UTF-8");
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(zero), '\n');
+    const std::size_t start = zero == 0 ? std::string_view::npos : text.rfind('\n', zero - 1);
+    const std::size_t column = start == std::string_view::npos ? zero + 1 : zero - start;
+    refuse_text(fmt::format("{}:{}:{}", file, line, column), "holds a zero byte");
+  }
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    refuse_text(file + ":1:1", "is empty");
+}
+
+// The first line with a tab in its indentation, 0 when there is none.
+int line_indented_by_tab(std::string_view text) {
+  int line = 1;
+  for (std::size_t at = 0; at < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view indent = text.substr(at, text.find_first_not_of(" \t", at) - at);
+    if (at + indent.size() < end && indent.find('\t') != std::string_view::npos) return line;
+    at = end + 1;
+  }
+  return 0;
+}
+
+Json number_json(const Document& node) {
+  const char* const end = node.text.data() + node.text.size();
+  if (node.whole) {
+    std::uint64_t natural = 0;
+    if (const auto r = std::from_chars(node.text.data(), end, natural);
+        r.ec == std::errc() && r.ptr == end)
+      return natural;
+    std::int64_t integer = 0;
+    if (const auto r = std::from_chars(node.text.data(), end, integer);
+        r.ec == std::errc() && r.ptr == end)
+      return integer;
+  }
+  return node.number;
+}
+
+}  // namespace
+
+const DocumentEntry* Document::find(std::string_view key) const {
+  for (const DocumentEntry& entry : map)
+    if (entry.key == key) return &entry;
+  return nullptr;
+}
+
+Document parse_yaml_document(std::string_view text, const std::string& file) {
+  check_bytes(text, file);
+  try {
+    std::istringstream in{std::string(text)};
+    YAML::Parser parser(in);
+    Builder builder(file);
+    if (!parser.HandleNextDocument(builder)) refuse_text(file + ":1:1", "holds no document");
+    Builder second(file);
+    if (parser.HandleNextDocument(second)) refuse_text(file, "holds a second document");
+    return builder.take();
+  } catch (const YAML::Exception& error) {
+    if (const int line = line_indented_by_tab(text); line > 0 && line <= error.mark.line + 1)
+      refuse_text(fmt::format("{}:{}:1", file, line),
+                  "is not valid YAML: a line is indented with a tab, blanks are wanted");
+    refuse_text(fmt::format("{}:{}:{}", file, error.mark.line + 1, error.mark.column + 1),
+                "is not valid YAML: " + error.msg);
+  }
+}
+
+Document parse_document(std::string_view text, const std::string& file) {
+  return file.ends_with(".json") ? parse_json_document(text, file)
+                                 : parse_yaml_document(text, file);
+}
+
+Json as_json(const Document& node) {
+  switch (node.kind) {
+    case Document::Kind::boolean:
+      return node.boolean;
+    case Document::Kind::number:
+      return number_json(node);
+    case Document::Kind::text:
+      return node.text;
+    case Document::Kind::list: {
+      Json list = Json::array();
+      for (const Document& value : node.list) list.push_back(as_json(value));
+      return list;
+    }
+    case Document::Kind::map: {
+      Json map = Json::object();
+      for (const DocumentEntry& entry : node.map) map[entry.key] = as_json(entry.value);
+      return map;
+    }
+    case Document::Kind::null:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace libchar

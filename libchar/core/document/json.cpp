@@ -1,0 +1,73 @@
+#include "libchar/core/document/json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/text/utf8.hpp"
+
+namespace libchar {
+namespace {
+
+void check_finite(const Json& node) {
+  if (node.is_number_float() && !std::isfinite(node.get<double>()))
+    throw std::logic_error("a non-finite number reached a JSON document");
+  if (node.is_structured())
+    for (const Json& child : node) check_finite(child);
+}
+
+// nlohmann would throw, or write U+FFFD: what was there is kept readable instead.
+void escape_strings(Json& node) {
+  const auto bad = [](const std::string& text) {
+    return first_invalid_utf8(text) != std::string_view::npos;
+  };
+  if (node.is_string() && bad(node.get_ref<const std::string&>()))
+    node = printable(node.get_ref<const std::string&>());
+  if (node.is_array())
+    for (Json& child : node) escape_strings(child);
+  if (!node.is_object()) return;
+  Json copy = Json::object();
+  for (auto& [key, child] : node.items()) {
+    escape_strings(child);
+    copy[bad(key) ? printable(key) : key] = std::move(child);
+  }
+  node = std::move(copy);
+}
+
+bool all_utf8(const Json& node) {
+  if (node.is_string())
+    return first_invalid_utf8(node.get_ref<const std::string&>()) == std::string_view::npos;
+  if (node.is_array())
+    for (const Json& child : node)
+      if (!all_utf8(child)) return false;
+  if (node.is_object())
+    for (const auto& [key, child] : node.items())
+      if (first_invalid_utf8(key) != std::string_view::npos || !all_utf8(child)) return false;
+  return true;
+}
+
+}  // namespace
+
+Json json_number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+Json json_number(const std::optional<double>& value) {
+  return value ? json_number(*value) : Json(nullptr);
+}
+
+std::string json_text(std::string_view text) {
+  return first_invalid_utf8(text) == std::string_view::npos ? std::string(text) : printable(text);
+}
+
+Json with_valid_text(Json document) {
+  if (!all_utf8(document)) escape_strings(document);
+  return document;
+}
+
+std::string dump_json(const Json& document) {
+  check_finite(document);
+  return with_valid_text(document).dump(2) + "\n";
+}
+
+}  // namespace libchar

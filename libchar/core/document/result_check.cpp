@@ -1,0 +1,145 @@
+#include "libchar/core/document/result_check.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/document/json.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/log_files.hpp"
+#include "libchar/core/file/output_files.hpp"
+#include "libchar/core/file/sha256.hpp"
+
+namespace libchar {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostOfDocument = std::size_t{1} << 30U;
+constexpr std::size_t kPieceOfFile = std::size_t{1} << 20U;
+
+/// SHA-256 of a file of any length, with the parts behind it where it is a list of them; "" where it cannot be read.
+std::string digest_of(const std::string& path) {
+  try {
+    Sha256 hash;
+    for (const std::string& file : files_of_log(path))
+      for_pieces_of_file(file, kPieceOfFile, [&](std::string_view piece) { hash.update(piece); });
+    return hash.finish();
+  } catch (const Error&) {
+    return "";
+  }
+}
+
+FileState state_of(const std::string& path, const std::string& digest) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return FileState::missing;
+  if (digest.empty()) return FileState::there;
+  const std::string now = digest_of(path);
+  return now.empty() ? FileState::missing : now == digest ? FileState::same : FileState::changed;
+}
+
+std::string text_at(const Json& object, const char* key) {
+  const auto it = object.is_object() ? object.find(key) : object.end();
+  return it != object.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+const Json& member(const Json& object, const char* key) {
+  static const Json kNothing;
+  return object.is_object() && object.contains(key) ? object[key] : kNothing;
+}
+
+const Json& list_at(const Json& object, const char* key) {
+  static const Json kEmpty = Json::array();
+  const Json& value = member(object, key);
+  return value.is_array() ? value : kEmpty;
+}
+
+CheckedFile checked_input(const Json& input, const std::string& inputs_in) {
+  CheckedFile out{text_at(input, "path"), true, FileState::unknown};
+  if (out.path == "standard input") return out;
+  if (!inputs_in.empty()) out.path = (fs::path(inputs_in) / out.path).string();
+  out.state = state_of(out.path, text_at(input, "sha256"));
+  return out;
+}
+
+ResultCheck check_document(const fs::path& path,
+                           const Json& document,
+                           const std::string& inputs_in) {
+  const Json& tool = member(document, "tool");
+  ResultCheck out{path.string(), text_at(tool, "version"), text_at(tool, "build"), {}};
+  for (const Json& input : list_at(document, "input"))
+    out.files.push_back(checked_input(input, inputs_in));
+  const Json& digests = member(document, "files_sha256");
+  for (const Json& name : list_at(document, "files")) {
+    if (!name.is_string()) continue;
+    const fs::path file = path.parent_path() / fs::path(name.get<std::string>()).filename();
+    out.files.push_back(
+        {file.string(),
+         false,
+         state_of(file.string(), text_at(digests, name.get<std::string>().c_str()))});
+  }
+  return out;
+}
+
+}  // namespace
+
+Json result_document(const std::string& path) {
+  return Json::parse(file_text(path, kMostOfDocument), nullptr, false);
+}
+
+std::string_view state_word(FileState state) {
+  switch (state) {
+    case FileState::same:
+      return "same";
+    case FileState::changed:
+      return "changed";
+    case FileState::missing:
+      return "missing";
+    case FileState::there:
+      return "there";
+    case FileState::unknown:
+      return "not known";
+  }
+  return "";
+}
+
+bool ResultCheck::holds() const {
+  return std::none_of(files.begin(), files.end(), [](const CheckedFile& file) {
+    return file.state == FileState::changed || file.state == FileState::missing;
+  });
+}
+
+std::vector<ResultCheck> check_results(const std::string& folder_or_document,
+                                       const std::string& inputs_in) {
+  refuse_interrupted(folder_or_document);
+  std::vector<fs::path> documents = {folder_or_document};
+  std::error_code problem;
+  const bool folder = fs::is_directory(folder_or_document, problem);
+  if (folder) {
+    documents.clear();
+    for (fs::directory_iterator entry(folder_or_document, problem), end; !problem && entry != end;
+         entry.increment(problem))
+      if (entry->path().extension() == ".json") documents.push_back(entry->path());
+    std::sort(documents.begin(), documents.end());
+  }
+  std::vector<ResultCheck> out;
+  for (const fs::path& path : documents) {
+    const Json document = result_document(path.string());
+    if (document.is_object() && document.contains("files") && document.contains("tool"))
+      out.push_back(check_document(path, document, inputs_in));
+  }
+  if (out.empty())
+    throw Error({ErrorKind::input,
+                 "E0556",
+                 folder_or_document,
+                 folder
+                     ? "holds no document that names its files (report.json, runs.json, lot.json)"
+                     : "is no document that names its files (report.json, runs.json, lot.json)",
+                 "",
+                 "name a folder that characterize or replay has written"});
+  return out;
+}
+
+}  // namespace libchar

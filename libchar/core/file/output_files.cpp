@@ -1,0 +1,219 @@
+#include "libchar/core/file/output_files.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "libchar/core/detail/output_journal.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/sha256.hpp"
+#include "libchar/core/file/unfinished_files.hpp"
+#include "libchar/core/file/whole_file.hpp"
+
+namespace libchar {
+
+namespace {
+
+void make_folder(const std::filesystem::path& folder) {
+  if (folder.empty()) return;  // the folder one is in
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem)
+    throw Error({ErrorKind::output,
+                 "E0505",
+                 folder.string(),
+                 "cannot make this folder: " + problem.message(),
+                 "",
+                 ""});
+}
+
+/// Of a document that is replaced; a larger one is none of ours.
+constexpr std::size_t kMostReportBytes = std::size_t{1} << 30U;
+
+bool is_document(const std::filesystem::path& path) {
+  return path.extension() == ".json";
+}
+
+/// Names that a document gives as files written with it: plain ones.
+std::set<std::string> files_named_in(const Json& document) {
+  std::set<std::string> names;
+  if (!document.is_object() || !document.contains("files") || !document["files"].is_array())
+    return names;
+  for (const Json& value : document["files"])
+    if (value.is_string() && value.get<std::string>().find('/') == std::string::npos)
+      names.insert(value.get<std::string>());
+  return names;
+}
+
+/// What the documents that this set replaces name as theirs and its own do not: regular files of the folder.
+std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
+  namespace fs = std::filesystem;
+  std::set<std::string> before, now;
+  for (const OutputFile& output : outputs) {
+    now.insert(fs::path(output.path).filename().string());
+    if (!is_document(output.path)) continue;
+    if (std::error_code ignored; fs::is_regular_file(output.path, ignored))
+      before.merge(
+          files_named_in(Json::parse(file_text(output.path, kMostReportBytes), nullptr, false)));
+    now.merge(files_named_in(Json::parse(output.text, nullptr, false)));
+  }
+  std::vector<std::string> stale;
+  for (const std::string& name : before) {
+    std::error_code ignored;
+    const fs::path path = fs::path(outputs.front().path).replace_filename(name);
+    if (!now.contains(name) && fs::symlink_status(path, ignored).type() == fs::file_type::regular)
+      stale.push_back(name);
+  }
+  return stale;
+}
+
+std::filesystem::path folder_of(const WholeFile& file) {
+  const auto folder = std::filesystem::path(file.path()).parent_path();
+  return folder.empty() ? "." : folder;  // the one we are in
+}
+
+/// All names at once, as far as a file system can: the journal first, then what it says. The folder is locked.
+void give_names(const std::vector<WholeFile*>& files,
+                const std::vector<std::string>& stale,
+                const std::filesystem::path& folder) {
+  for (WholeFile* file : files) file->prepare();
+  OutputJournal journal;
+  journal.remove = stale;
+  for (const WholeFile* file : files)
+    if (!file->temporary().empty())
+      journal.rename.emplace_back(std::filesystem::path(file->temporary()).filename().string(),
+                                  std::filesystem::path(file->path()).filename().string());
+  for (WholeFile* file : files)
+    if (file->temporary().empty()) file->commit();  // a device
+  const JournalFile written = journal_file(folder, journal);
+  const GivingNames naming;
+  // As long as no journal names them all can still be taken back: the temporary files are theirs.
+  const auto hand_over = [&] {
+    for (WholeFile* file : files) file->hand_over();
+  };
+  try {
+    written.write();
+    run_journal(folder, journal);
+  } catch (...) {
+    if (written.there()) hand_over();
+    throw;
+  }
+  hand_over();
+}
+
+/// Files of one folder. Devices and pipes are written through and need no journal: nor may they stand where one can be written.
+void commit_set(const std::vector<WholeFile*>& files, const std::filesystem::path& folder) {
+  const auto special = [](const WholeFile* file) { return file->special(); };
+  if (files.size() == 1 || std::all_of(files.begin(), files.end(), special)) {
+    for (WholeFile* file : files) file->commit();
+    return;
+  }
+  const FolderLock lock(folder);
+  finish_journal(folder);
+  remove_litter(folder);
+  give_names(files, {}, folder);
+}
+
+}  // namespace
+
+void check_outputs(const std::vector<std::string>& paths,
+                   const std::filesystem::path& folder,
+                   const std::vector<std::string>& inputs,
+                   bool force) {
+  make_folder(folder);
+  for (const std::string& path : paths) {
+    for (const std::string& input : inputs) refuse_same_file(input, path);
+    check_output(path, force);
+  }
+}
+
+void foresee_outputs(const std::vector<std::string>& paths,
+                     const std::filesystem::path& folder,
+                     const std::vector<std::string>& inputs,
+                     bool force) {
+  std::error_code ignored;
+  const auto there = std::filesystem::status(folder.empty() ? "." : folder, ignored).type();
+  if (there != std::filesystem::file_type::not_found) check_outputs(paths, folder, inputs, force);
+}
+
+std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
+                                       const std::filesystem::path& into,
+                                       const std::vector<std::string>& inputs,
+                                       bool force,
+                                       const std::vector<WholeFile*>& streamed) {
+  const std::filesystem::path folder = into.empty() ? "." : into;  // the one we are in
+  make_folder(folder);
+  const FolderLock lock(folder);
+  finish_journal(folder);
+  remove_litter(folder);
+  std::vector<WholeFile> files;
+  for (const OutputFile& output : outputs) {
+    for (const std::string& input : inputs) refuse_same_file(input, output.path);
+    files.emplace_back(output.path, force).write(output.text);
+  }
+  const auto stale = force ? stale_files(outputs) : std::vector<std::string>{};
+  for (const std::string& name : stale)
+    for (const std::string& input : inputs) refuse_same_file(input, (folder / name).string());
+  std::vector<WholeFile*> all;
+  all.reserve(files.size() + streamed.size());
+  for (WholeFile& file : files) all.push_back(&file);
+  all.insert(all.end(), streamed.begin(), streamed.end());
+  give_names(all, stale, folder);
+  return stale;
+}
+
+void commit_together(const std::vector<WholeFile*>& files) {
+  if (files.size() == 1) return files.front()->commit();
+  for (WholeFile* file : files) file->prepare();
+  std::vector<std::filesystem::path> folders;
+  for (const WholeFile* file : files)
+    if (std::find(folders.begin(), folders.end(), folder_of(*file)) == folders.end())
+      folders.push_back(folder_of(*file));
+  for (const auto& folder : folders) {
+    std::vector<WholeFile*> set;
+    for (WholeFile* file : files)
+      if (folder_of(*file) == folder) set.push_back(file);
+    commit_set(set, folder);
+  }
+}
+
+WrittenFile as_written(const OutputFile& file) {
+  Sha256 hash;
+  hash.update(file.text);
+  return {file.path, hash.finish()};
+}
+
+void name_files(Json& document, const std::vector<OutputFile>& outputs) {
+  std::vector<WrittenFile> files;
+  for (const OutputFile& output : outputs) files.push_back(as_written(output));
+  name_files(document, files);
+}
+
+void name_files(Json& document, const std::vector<WrittenFile>& outputs) {
+  document["files"] = Json::array();
+  document["files_sha256"] = Json::object();
+  for (const WrittenFile& output : outputs) {
+    const std::string name = std::filesystem::path(output.path).filename().string();
+    document["files"].push_back(name);
+    if (!is_document(output.path)) document["files_sha256"][name] = output.sha256;
+  }
+}
+
+void refuse_interrupted(const std::filesystem::path& folder_or_file) {
+  std::error_code ignored;
+  const bool whole = std::filesystem::is_directory(folder_or_file, ignored);
+  auto folder = whole ? folder_or_file : folder_or_file.parent_path();
+  if (folder.empty()) folder = ".";
+  if (whole ? !has_journal(folder) : !journal_names(folder, folder_or_file.filename())) return;
+  throw Error(
+      {ErrorKind::output,
+       "E0516",
+       folder.string(),
+       "a run was interrupted while it gave its results their names: some files here may be "
+       "older than others",
+       "",
+       "run it again into this folder"});
+}
+
+}  // namespace libchar

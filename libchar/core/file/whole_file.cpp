@@ -1,0 +1,347 @@
+#include "libchar/core/file/whole_file.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/file/unfinished_files.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kBuffer = std::size_t{1} << 18;
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+}
+
+bool exists(const std::string& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0;
+}
+
+std::string temporary_name(const std::string& path, int attempt) {
+  return fmt::format("{}{}{}-{}", path, kTemporaryMark, ::getpid(), attempt);
+}
+
+// A device or pipe (/dev/null, /dev/full) cannot be replaced by renaming: it is written through.
+bool is_special(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+std::string real_folder_of(const std::string& path) {
+  char* const real = ::realpath(folder_of(path).c_str(), nullptr);
+  std::string result = real == nullptr ? "" : real;
+  std::free(real);
+  return result;
+}
+
+// The open file of this process that a path means (/dev/stdout, /dev/fd/3, a link to one of them), or -1. Such a
+// name is no place for another file: what was opened is written to, where it stands.
+int own_descriptor(std::string path) {
+  const std::string own = real_folder_of("/proc/self/fd/.");
+  for (int links = 0; links < 40 && !own.empty(); ++links) {
+    char target[4096];
+    const ssize_t n = ::readlink(path.c_str(), target, sizeof target);
+    if (n <= 0 || n == sizeof target) return -1;
+    if (real_folder_of(path) == own) {
+      const std::string number = path.substr(path.rfind('/') + 1);
+      int descriptor = -1;
+      const auto read = std::from_chars(number.data(), number.data() + number.size(), descriptor);
+      return read.ec == std::errc{} && read.ptr == number.data() + number.size() ? descriptor : -1;
+    }
+    const std::string next(target, static_cast<std::size_t>(n));
+    path = next.front() == '/' ? next : folder_of(path) + "/" + next;
+  }
+  return -1;
+}
+
+[[noreturn]] void refuse(std::string code,
+                         const std::string& path,
+                         std::string what,
+                         std::string hint) {
+  throw Error({ErrorKind::output, std::move(code), path, std::move(what), "", std::move(hint)});
+}
+
+// What can be said of a name before anything is opened.
+void refuse_name(const std::string& path, bool overwrite) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
+    refuse("E0502", path, "is a folder, a file was expected", "name a file inside it");
+  if (::lstat(path.c_str(), &status) != 0) return;
+  if (!overwrite)
+    refuse("E0503",
+           path,
+           "exists already and is left as it is",
+           "choose another name or pass `overwrite`");
+  // Renaming asks for the folder's rights alone; who made a file read-only meant the file. An administrator may
+  // write everything, so the bits are looked at too.
+  if (S_ISREG(status.st_mode) &&
+      ((status.st_mode & 0222U) == 0 || ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0))
+    refuse("E0517",
+           path,
+           "is read-only and is left as it is",
+           "choose another name, or make it writable first");
+}
+
+// A new file in the place of an older one is as private as that was: owner, group and rights are kept, and where the
+// group cannot be, it gets no rights.
+void keep_rights(int descriptor, const std::string& path) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
+  mode_t mode = status.st_mode & 0777U;
+  if (::fchown(descriptor, status.st_uid, status.st_gid) != 0 &&
+      ::fchown(descriptor, static_cast<uid_t>(-1), status.st_gid) != 0)
+    mode &= ~mode_t{070};
+  [[maybe_unused]] const int kept = ::fchmod(descriptor, mode);
+}
+
+}  // namespace
+
+void WholeFile::fail(std::string_view doing) const {
+  throw Error({ErrorKind::output,
+               "E0501",
+               path_,
+               fmt::format("cannot {}: {}", doing, std::strerror(errno)),
+               "",
+               ""});
+}
+
+WholeFile::WholeFile(std::string path, bool overwrite)
+    : path_(std::move(path)), overwrite_(overwrite) {
+  if (path_.empty()) refuse("E0502", "", "an output file needs a name", "");
+  if (open_through()) return;
+  refuse_name(path_, overwrite_);
+  // A file without a name vanishes with the process, however that ends; not every file system offers it.
+  descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
+    if (!temporary_.empty()) forget_unfinished(temporary_);
+    temporary_ = temporary_name(path_, attempt);
+    remember_unfinished(temporary_);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST) break;
+  }
+  if (descriptor_ < 0) {
+    const int problem = errno;
+    hand_over();
+    errno = problem;
+    fail("create a file in this folder");
+  }
+  keep_rights(descriptor_, path_);
+}
+
+bool WholeFile::open_through() {
+  const int own = own_descriptor(path_);
+  special_ = own >= 0 || is_special(path_);
+  if (!special_) return false;
+  descriptor_ =
+      own >= 0 ? ::fcntl(own, F_DUPFD_CLOEXEC, 3) : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor_ < 0) fail("open for writing");
+  const bool appends = (::fcntl(descriptor_, F_GETFL) & O_APPEND) != 0;
+  begin_ = appends ? -1 : ::lseek(descriptor_, 0, SEEK_CUR);
+  return true;
+}
+
+WholeFile::WholeFile(WholeFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      buffer_(std::move(other.buffer_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      begin_(other.begin_),
+      flushed_(other.flushed_),
+      overwrite_(other.overwrite_),
+      special_(other.special_) {}
+
+WholeFile::~WholeFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (temporary_.empty()) return;
+  ::unlink(temporary_.c_str());
+  forget_unfinished(temporary_);
+}
+
+void WholeFile::hand_over() {
+  forget_unfinished(temporary_);
+  temporary_.clear();
+}
+
+void WholeFile::write(std::string_view bytes) {
+  buffer_.append(bytes);
+  if (buffer_.size() >= kBuffer) flush();
+}
+
+void WholeFile::flush() {
+  for (std::size_t done = 0; done < buffer_.size();) {
+    const ssize_t n = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail("write");
+    done += static_cast<std::size_t>(n);
+  }
+  flushed_ = flushed_ || !buffer_.empty();
+  buffer_.clear();
+}
+
+void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
+  if (!flushed_) {
+    buffer_.replace(offset, bytes.size(), bytes);
+    return;
+  }
+  if (begin_ < 0)
+    refuse("E0501",
+           path_,
+           "this format says at its beginning how long it is, and a pipe cannot be gone back in",
+           "write to a file, or as CSV");
+  flush();
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n = ::pwrite(descriptor_,
+                               bytes.data() + done,
+                               bytes.size() - done,
+                               begin_ + static_cast<off_t>(offset + done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail("write");
+    done += static_cast<std::size_t>(n);
+  }
+}
+
+void WholeFile::flush_to_disk() {
+  flush();
+  if (!special_ && ::fsync(descriptor_) != 0) fail("flush to disk");
+}
+
+// False where the name is taken.
+bool WholeFile::link_to(const std::string& name) const {
+  const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
+  if (::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+    return true;
+  if (errno != EEXIST) fail("name the finished file");
+  return false;
+}
+
+void WholeFile::prepare() {
+  if (descriptor_ < 0) return;
+  flush_to_disk();
+  if (special_) return;
+  // A nameless file gets a temporary name first: linkat cannot replace.
+  for (int attempt = 0; temporary_.empty(); ++attempt) {
+    const std::string name = temporary_name(path_, attempt);
+    remember_unfinished(name);
+    if (link_to(name)) {
+      temporary_ = name;
+      break;
+    }
+    forget_unfinished(name);
+    if (attempt == 100) {
+      errno = EEXIST;
+      fail("name the finished file");
+    }
+  }
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail("close");
+  struct stat status {};
+  if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) {
+    errno = EISDIR;
+    fail("take its name");
+  }
+  if (!overwrite_ && exists(path_)) {
+    errno = EEXIST;
+    fail("take its name");
+  }
+}
+
+// Where nothing has the name a nameless file gets it at once, and no kill can leave it under a temporary one.
+bool WholeFile::take_free_name() {
+  if (special_ || descriptor_ < 0 || !temporary_.empty()) return false;
+  flush_to_disk();
+  const GivingNames naming;
+  if (exists(path_) || !link_to(path_)) return false;
+  if (::close(std::exchange(descriptor_, -1)) != 0) {
+    ::unlink(path_.c_str());
+    fail("close");
+  }
+  sync_folder(folder_of(path_));
+  return true;
+}
+
+void WholeFile::commit() {
+  if (take_free_name()) return;
+  prepare();
+  if (descriptor_ >= 0) {  // a device or pipe
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
+    return;
+  }
+  {
+    const GivingNames naming;
+    if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
+    hand_over();
+  }
+  remove_litter(folder_of(path_));
+  sync_folder(folder_of(path_));
+}
+
+bool writes_through(const std::string& path) {
+  return own_descriptor(path) >= 0 || is_special(path);
+}
+
+void check_output(const std::string& path, bool overwrite) {
+  // A device or pipe is not even opened: who reads it would take that for the whole of it.
+  if (writes_through(path)) return;
+  const WholeFile trial(path, overwrite);  // discarded: nothing appears under the name
+}
+
+void remove_litter(const std::string& folder) {
+  const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(folder.c_str()), ::closedir);
+  if (!entries) return;
+  while (const dirent* entry = ::readdir(entries.get())) {
+    const std::string name = entry->d_name;
+    const std::size_t mark = name.rfind(kTemporaryMark);
+    if (mark == std::string::npos) continue;
+    const std::string number = name.substr(mark + kTemporaryMark.size());
+    pid_t process = 0;
+    const auto read = std::from_chars(number.data(), number.data() + number.size(), process);
+    if (read.ec != std::errc{} || *read.ptr != '-' || process <= 0 ||
+        number.find_first_not_of("-0123456789") != std::string::npos)
+      continue;
+    // Of a folder of such a name it is none.
+    if (::kill(process, 0) != 0 && errno == ESRCH) ::unlink((folder + "/" + name).c_str());
+  }
+}
+
+void sync_folder(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+void write_whole_file(const std::string& path, std::string_view bytes, bool overwrite) {
+  WholeFile file(path, overwrite);
+  file.write(bytes);
+  file.commit();
+}
+
+void refuse_same_file(const std::string& input, const std::string& output) {
+  struct stat a {
+  }, b{};
+  if (::stat(input.c_str(), &a) != 0 || ::stat(output.c_str(), &b) != 0) return;
+  if (a.st_dev == b.st_dev && a.st_ino == b.st_ino && S_ISREG(a.st_mode))
+    throw Error({ErrorKind::output,
+                 "E0504",
+                 output,
+                 "is the input itself; an input is never overwritten",
+                 "",
+                 "choose another name"});
+}
+
+}  // namespace libchar

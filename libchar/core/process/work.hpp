@@ -1,0 +1,59 @@
+#pragma once
+// How much was done, in counts that are the same on every machine and for any number of threads: what shows that nothing is computed
+// that nobody reads.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "libchar/core/document/enum_table.hpp"
+#include "libchar/core/document/json.hpp"
+
+namespace libchar {
+
+enum class WorkKind : std::size_t {
+  passes,             ///< over a log or a simulation
+  rows,               ///< of logs, in all passes
+  segments,           ///< transformed for spectra
+  cosine_transforms,  ///< of records and blocks, for fits
+  allan_terms,        ///< differences that were averaged
+  descents,           ///< of a likelihood or a sum of squares to its least
+  simulated_samples,  ///< of sensors
+  learnt_instants,    ///< given to fusion algorithms to learn from
+  training_steps,     ///< of perceptrons
+  fused_instants,     ///< estimates of fusion algorithms that are shown
+  blind_instants      ///< the same for what is shown where there is no reference
+};
+template <>
+inline constexpr auto enum_table<WorkKind> =
+    enum_words<WorkKind>({{WorkKind::passes, "passes"},
+                          {WorkKind::rows, "rows"},
+                          {WorkKind::segments, "segments"},
+                          {WorkKind::cosine_transforms, "cosine_transforms"},
+                          {WorkKind::allan_terms, "allan_terms"},
+                          {WorkKind::descents, "descents"},
+                          {WorkKind::simulated_samples, "simulated_samples"},
+                          {WorkKind::learnt_instants, "learnt_instants"},
+                          {WorkKind::training_steps, "training_steps"},
+                          {WorkKind::fused_instants, "fused_instants"},
+                          {WorkKind::blind_instants, "blind_instants"}});
+
+using WorkDone = std::array<std::uint64_t, enum_table<WorkKind>.size()>;
+
+/// {"passes": 1, …}: the kinds that were done at all.
+Json work_json(const WorkDone& work);
+
+/// Adds to the counts of the process, from any thread.
+void count_work(WorkKind kind, std::uint64_t more);
+
+/// What the process does from its making on: jobs beside it count too.
+class WorkMeter {
+ public:
+  WorkMeter();
+  WorkDone done() const;
+
+ private:
+  WorkDone before_;
+};
+
+}  // namespace libchar

@@ -1,0 +1,331 @@
+#include "libchar/figure/detail/sources/curve_sources.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libchar/allan/deviation_types.hpp"
+#include "libchar/characterize/curves/curve_document.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/figure/detail/sources/report_values.hpp"
+#include "libchar/fit/curve/curve_table.hpp"
+#include "libchar/fit/fit_json.hpp"
+#include "libchar/log/text_table.hpp"
+#include "libchar/spectrum/spectrum_interval.hpp"
+
+namespace libchar {
+namespace {
+
+std::string statistic_of(const std::string& word) {
+  const auto type = deviation_type(word);
+  return type ? std::string(deviation_row(*type).title) : word.empty() ? "Allan deviation" : word;
+}
+
+void add_ends(SourceCurve& curve, const std::vector<Interval>& intervals) {
+  for (const Interval& ends : intervals) {
+    curve.low95.push_back(ends.low);
+    curve.high95.push_back(ends.high);
+  }
+}
+
+std::string line_statistic(const std::string& kind) {
+  // "psd_one_sided" of curves.csv
+  for (const Sides sides : {Sides::one, Sides::two})
+    for (const EnumWord<Scaling>& row : enum_table<Scaling>)
+      if (kind == fmt::format("{}_{}_sided", row.word, name_of(sides)))
+        return spectrum_statistic(sides, row.value);
+  return kind.empty() ? "Power spectral density" : kind;
+}
+
+}  // namespace
+
+std::string spectrum_statistic(Sides sides, Scaling scaling) {
+  std::string word(name_of(scaling));
+  std::transform(word.begin(), word.end(), word.begin(), [](char c) {
+    return static_cast<char>(c - 'a' + 'A');
+  });
+  return (sides == Sides::one ? "One-sided " : "Two-sided ") + word;
+}
+
+std::string mark_text(Term term, double value, const std::string& unit) {
+  const auto& name = kTermNames[static_cast<std::size_t>(term)];
+  const std::string shown = shown_term_unit(name.key, unit == "U" ? "" : unit);
+  return fmt::format(
+      "{} = {}{}", name.letter, number_text(value, 3), shown.empty() ? "" : " " + shown);
+}
+
+void add_allan_curves(FigureSource& out, const MapReader& document) {
+  const AllanDocument read = read_allan(document);
+  for (const AllanOfChannel& channel : read.channels) {
+    if (channel.curve.points.empty()) continue;
+    SourceCurve curve = source_curve(channel.name, channel.unit, channel.curve);
+    curve.statistic = statistic_of(channel.type.empty() ? read.type : channel.type);
+    curve.value_unit =
+        channel.value_unit.empty() ? curve.unit : usual_figure_unit(channel.value_unit);
+    curve.model = channel.predicted.model;
+    curve.lines = channel.predicted.asymptotes;
+    curve.data_sheet = channel.data_sheet;
+    out.curves.push_back(std::move(curve));
+  }
+}
+
+void add_spectra(FigureSource& out, const MapReader& document) {
+  const SpectrumDocument read = read_spectra(document);
+  const auto sides = find_enum<Sides>(read.sides);
+  const auto scaling = find_enum<Scaling>(read.scaling);
+  for (const SpectrumOfChannel& channel : read.channels) {
+    if (channel.spectrum.frequency_hz.empty()) continue;
+    SourceCurve curve;
+    curve.channel = channel.name;
+    curve.unit = usual_figure_unit(channel.unit);
+    curve.is_allan = false;
+    curve.statistic =
+        sides && scaling ? spectrum_statistic(*sides, *scaling) : read.sides + " " + read.scaling;
+    curve.value_unit = channel.value_unit.empty()
+                           ? spectrum_unit(scaling.value_or(Scaling::psd), curve.unit)
+                           : channel.value_unit;
+    curve.x = channel.spectrum.frequency_hz;
+    curve.y = channel.spectrum.value;
+    add_ends(curve, channel.ci95);
+    curve.model = channel.predicted.model;
+    curve.lines = channel.predicted.asymptotes;
+    out.curves.push_back(std::move(curve));
+  }
+}
+
+void add_residuals(FigureSource& out, const MapReader& fit) {
+  for (const MapReader& channel : fit.maps("channels")) {
+    NoiseFit read;
+    read_fields(fit_residual_fields(), channel, read);
+    if (read.residuals.empty()) continue;
+    SourceResiduals one;
+    one.channel = channel.text_or("name", "");
+    for (const FitResidual& residual : read.residuals) {
+      one.x.push_back(residual.frequency_hz);
+      one.z.push_back(residual.z);
+      one.outside.push_back(!residual.inside);
+    }
+    out.residuals.push_back(std::move(one));
+  }
+}
+
+namespace {
+
+void add_marks(SourceCurve& curve, const MapReader& channel, const NoiseFit& fit) {
+  if (!channel.has("derived")) return;
+  DerivedNumbers derived;
+  read_fields(derived_fields(), channel.map("derived"), derived);
+  if (derived.plain_from_s > 0) curve.left_out.push_back({0, derived.plain_from_s});
+  for (const ReadOff& point : derived.read_off_points)
+    if (const auto& value = fit[point.term].value)
+      curve.marks.push_back(
+          {point.term, point.tau_s, point.deviation, mark_text(point.term, *value, curve.unit)});
+}
+
+void add_band(SourceCurve& curve, const FitBand& band) {
+  for (const Interval& out : band.left_out_hz) curve.left_out.push_back(out);
+  if (!band.whole && band.top_hz > 0)
+    curve.left_out.push_back({band.top_hz, std::numeric_limits<double>::infinity()});
+}
+
+}  // namespace
+
+void add_fit_to_curves(FigureSource& out, const MapReader& fit) {
+  for (const MapReader& channel : fit.maps("channels")) {
+    if (!channel.has("goodness")) continue;
+    NoiseFit read;
+    read_fields(noise_fit_fields(), channel, read);
+    for (SourceCurve& curve : out.curves) {
+      if (curve.channel != channel.text_or("name", "")) continue;
+      if (curve.is_allan)
+        add_marks(curve, channel, read);
+      else
+        add_band(curve, read.band);
+    }
+  }
+}
+
+void add_traces(FigureSource& out, const MapReader& trace) {
+  const double rate_hz = trace.number_or("rate_hz", 1);
+  for (const MapReader& channel : trace.maps("channels")) {
+    TraceOfChannel read;
+    read_fields(trace_fields(), channel, read);
+    channel.list("high", read.trace.low.size());
+    if (read.trace.low.empty()) continue;
+    SourceTrace one;
+    one.channel = read.name;
+    one.unit = usual_figure_unit(read.unit);
+    one.block_s = static_cast<double>(read.trace.block) / (rate_hz > 0 ? rate_hz : 1);
+    one.low = read.trace.low;
+    one.high = read.trace.high;
+    for (const TraceMark& mark : read.marks)
+      one.marks.push_back({mark.label, mark.from_s, mark.to_s});
+    out.traces.push_back(std::move(one));
+  }
+}
+
+void add_simulated(FigureSource& out, const MapReader& verification) {
+  for (const Document& node : verification.list("channels")) {
+    if (node.kind != Document::Kind::map) continue;
+    VerificationOfChannel simulated;
+    read_fields(verification_fields(),
+                MapReader(node, verification.file(), "verification.channels"),
+                simulated);
+    for (SourceCurve& curve : out.curves) {
+      if (curve.channel != simulated.name) continue;
+      if (!curve.is_allan) {
+        curve.simulated_x = simulated.spectrum.spectrum.frequency_hz;
+        curve.simulated_y = simulated.spectrum.spectrum.value;
+        continue;
+      }
+      for (const AllanPoint& p : simulated.allan.curve.points) {
+        curve.simulated_x.push_back(p.tau_s);
+        curve.simulated_y.push_back(p.deviation);
+      }
+    }
+  }
+}
+
+void add_table(FigureSource& out, const std::string& file, bool is_allan) {
+  const auto table = read_curve_table(file, is_allan);
+  if (!table) return;
+  for (const NamedCurve& named : table->curves) {
+    SourceCurve curve;
+    curve.channel = named.name;
+    curve.unit = usual_figure_unit(named.unit);
+    curve.is_allan = is_allan;
+    curve.statistic = is_allan ? statistic_of(named.kind) : line_statistic(named.kind);
+    curve.value_unit = is_allan ? curve.unit
+                       : named.value_unit.empty()
+                           ? spectrum_unit(Scaling::psd, curve.unit == "U" ? "" : curve.unit)
+                           : named.value_unit;
+    curve.x = named.curve.x;
+    curve.y = named.curve.y;
+    // A deviation is drawn; a table of variances holds its square.
+    if (is_allan && !named.curve.root)
+      for (double& y : curve.y) y = std::sqrt(y);
+    curve.low68 = named.low68;
+    curve.high68 = named.high68;
+    curve.low95 = named.low95;
+    curve.high95 = named.high95;
+    curve.model = named.model;
+    out.curves.push_back(std::move(curve));
+  }
+}
+
+namespace {
+
+struct WideColumn {
+  std::string name, unit;
+};
+
+std::optional<WideColumn> wide_column(const std::string& cell) {
+  const std::size_t open = cell.rfind('[');
+  if (open == std::string::npos || !cell.ends_with(']')) return std::nullopt;
+  return WideColumn{cell.substr(0, open), cell.substr(open + 1, cell.size() - open - 2)};
+}
+
+// "(deg/s)²/Hz": what it is and of what, as spectrum_unit writes it.
+std::pair<std::string, std::string> density_of(const std::string& unit) {
+  for (const auto& [end, statistic] : {std::pair{"²/Hz", "PSD"}, {"/√Hz", "LSD"}, {"²", "PS"}}) {
+    if (!unit.ends_with(end)) continue;
+    std::string base = unit.substr(0, unit.size() - std::string_view(end).size());
+    if (base.starts_with('(') && base.ends_with(')')) base = base.substr(1, base.size() - 2);
+    return {statistic, base};
+  }
+  return {"LS", unit};
+}
+
+}  // namespace
+
+void add_wide_spectra(FigureSource& out, const std::string& file) {
+  const auto table = read_text_table(file, kMaxDocumentBytes);
+  if (!table || table->header.cells.size() < 2 || table->header.cells[0].text != "frequency_hz")
+    return;
+  std::vector<SourceCurve> curves;
+  for (std::size_t c = 1; c < table->header.cells.size(); ++c) {
+    const auto column = wide_column(table->header.cells[c].text);
+    if (!column) return;
+    SourceCurve& curve = curves.emplace_back();
+    const auto [statistic, base] = density_of(column->unit);
+    curve.channel = column->name;
+    curve.unit = usual_figure_unit(base == "U" ? "" : base);
+    curve.is_allan = false;
+    curve.value_unit = column->unit;
+    curve.statistic = statistic;
+  }
+  bool two_sided = false;
+  for (const TextRow& row : table->rows) {
+    const auto number = [&](std::size_t c) {
+      const auto value =
+          c < row.cells.size() ? number_in(row.cells[c], table->decimal) : std::nullopt;
+      if (value) return *value;
+      throw Error({ErrorKind::input,
+                   "E0311",
+                   fmt::format("{}:{}", file, row.line),
+                   "a number was expected in each column of the header",
+                   c < row.cells.size() ? row.cells[c].text : "",
+                   ""});
+    };
+    const double f = number(0);
+    two_sided = two_sided || f < 0;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+      const double y = number(c + 1);
+      if (!(f > 0)) continue;
+      curves[c].x.push_back(f);
+      curves[c].y.push_back(y);
+    }
+  }
+  for (SourceCurve& curve : curves) {
+    curve.statistic = (two_sided ? "Two-sided " : "One-sided ") + curve.statistic;
+    out.curves.push_back(std::move(curve));
+  }
+}
+
+SourceCurve source_curve(const std::string& channel,
+                         const std::string& unit,
+                         const AllanCurve& curve) {
+  SourceCurve out;
+  out.channel = channel;
+  out.unit = usual_figure_unit(unit);
+  out.value_unit = usual_figure_unit(deviation_unit(curve.type, unit));
+  out.statistic = deviation_row(curve.type).title;
+  for (const AllanPoint& p : curve.points) {
+    const bool known = p.edf > 0;
+    out.x.push_back(p.tau_s);
+    out.y.push_back(p.deviation);
+    out.low68.push_back(known ? p.ci68.low : kNone);
+    out.high68.push_back(known ? p.ci68.high : kNone);
+    out.low95.push_back(known ? p.ci95.low : kNone);
+    out.high95.push_back(known ? p.ci95.high : kNone);
+    out.unreliable.push_back(!p.reliable);
+  }
+  return out;
+}
+
+SourceCurve source_curve(const std::string& channel,
+                         const std::string& unit,
+                         const Spectrum& spectrum) {
+  SourceCurve out;
+  out.channel = channel;
+  out.unit = usual_figure_unit(unit);
+  out.is_allan = false;
+  out.statistic = spectrum_statistic(spectrum.sides, spectrum.scaling);
+  out.value_unit = spectrum_unit(spectrum.scaling, unit);
+  const auto intervals = spectrum_intervals(spectrum, 0.95);
+  for (std::size_t i = 0; i < spectrum.frequency_hz.size(); ++i) {
+    if (!(spectrum.frequency_hz[i] > 0)) continue;
+    out.x.push_back(spectrum.frequency_hz[i]);
+    out.y.push_back(spectrum.value[i]);
+    out.low95.push_back(intervals[i] ? intervals[i]->low : kNone);
+    out.high95.push_back(intervals[i] ? intervals[i]->high : kNone);
+  }
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,252 @@
+#include "libchar/fit/curve/curve_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "libchar/allan/deviation_types.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
+#include "libchar/log/text_table.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
+
+// "Tau [s]" and "tau" are the same name.
+std::string bare_name(std::string name) {
+  name.resize(std::min({name.find('['), name.find('('), name.size()}));
+  while (!name.empty() && name.back() == ' ') name.pop_back();
+  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return name;
+}
+
+std::optional<std::size_t> find(const std::vector<TextCell>& header,
+                                std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names)
+    for (std::size_t c = 0; c < header.size(); ++c)
+      if (bare_name(header[c].text) == name) return c;
+  return std::nullopt;
+}
+
+// "(deg/s)²/Hz" and "g/√Hz" are densities of a channel in deg/s and g.
+std::string unit_under_density(std::string unit) {
+  for (const std::string_view end : {"²/Hz", "^2/Hz", "/√Hz", "/sqrt(Hz)"}) {
+    if (!unit.ends_with(end)) continue;
+    unit.resize(unit.size() - end.size());
+    if (unit.starts_with('(') && unit.ends_with(')')) unit = unit.substr(1, unit.size() - 2);
+  }
+  return unit;
+}
+
+struct Columns {
+  std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative,
+      absolute, low95, high95, model;
+  bool percent = false;  // the relative error is written in percent
+};
+
+Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
+  Columns c;
+  if (is_allan) {
+    c.x = find(header, {"tau_s", "tau", "averaging_time", "x"});
+    c.root = find(header, {"deviation", "adev", "oadev", "allan_deviation", "sigma", "value"});
+    c.power = find(header, {"avar", "variance", "allan_variance"});
+  } else {
+    c.x = find(header, {"frequency_hz", "frequency", "freq", "f", "x"});
+    c.root = find(header, {"lsd", "asd"});
+    c.power = find(header, {"psd", "value", "density"});
+  }
+  c.channel = find(header, {"channel", "name", "axis", "sensor"});
+  c.unit = find(header, {"unit"});
+  c.kind = find(header, {"curve"});
+  c.dof = find(header, {"edf", "dof"});
+  c.low = find(header, {"low68"});
+  c.high = find(header, {"high68"});
+  c.low95 = find(header, {"low95"});
+  c.high95 = find(header, {"high95"});
+  c.model = find(header, {"model"});
+  c.relative = find(header,
+                    {"rel_err",
+                     "relative_error",
+                     "rel_error",
+                     "relative error",
+                     "relative_sd",
+                     "rel_sd",
+                     "relative_uncertainty",
+                     "rel_unc"});
+  c.percent = c.relative && header[*c.relative].text.find('%') != std::string::npos;
+  c.absolute = find(header,
+                    {"error",
+                     "err",
+                     "sd",
+                     "std",
+                     "stderr",
+                     "standard_error",
+                     "standard error",
+                     "uncertainty",
+                     "deviation_sd",
+                     "dev_err"});
+  return c;
+}
+
+// One row into its curve; the place is of the cell that does not fit.
+class Reader {
+ public:
+  Reader(std::string file, const Columns& columns, const TextTable& table, bool is_allan)
+      : file_(std::move(file)),
+        columns_(columns),
+        width_(table.header.cells.size()),
+        decimal_(table.decimal),
+        is_allan_(is_allan) {}
+
+  void take(const TextRow& row) {
+    if (row.cells.size() != width_)
+      throw Error({ErrorKind::input,
+                   "E0304",
+                   fmt::format("{}:{}:1", file_, row.line),
+                   fmt::format("{} fields, {} expected", row.cells.size(), width_),
+                   "",
+                   "each row has a value for each name of the header"});
+    const auto text = [&](const std::optional<std::size_t>& column) {
+      return column ? row.cells[*column].text : "";
+    };
+    const std::string kind = text(columns_.kind);
+    if (columns_.kind && is_allan_ != (kind.find("dev") != std::string::npos || kind == "allan"))
+      return;
+    NamedCurve& target =
+        curve_of(columns_.channel ? text(columns_.channel) : "curve", text(columns_.unit), kind);
+    const bool by_root = columns_.root.has_value();
+    const double x = number(row, *columns_.x),
+                 y = number(row, by_root ? *columns_.root : *columns_.power);
+    if (x <= 0) return;  // the spectrum at zero frequency says nothing about noise
+    target.curve.root = by_root;
+    target.curve.x.push_back(x);
+    target.curve.y.push_back(y);
+    if (const auto sd = relative_sd(row, y)) target.curve.relative_sd.push_back(*sd);
+    keep(target.low68, row, columns_.low);
+    keep(target.high68, row, columns_.high);
+    keep(target.low95, row, columns_.low95);
+    keep(target.high95, row, columns_.high95);
+    keep(target.model, row, columns_.model);
+  }
+
+  std::vector<NamedCurve> finish() {
+    for (NamedCurve& named : curves_)
+      if (named.curve.relative_sd.size() != named.curve.x.size()) named.curve.relative_sd.clear();
+    return std::move(curves_);
+  }
+
+ private:
+  /// A row of this `curve` is of an Allan curve, not of a relative of it, where one is read; else of none of these.
+  bool wanted(const std::string& kind) const {
+    const auto type = deviation_type(kind);
+    const bool deviation = type || kind.find("dev") != std::string::npos || kind == "allan";
+    return is_allan_ ? deviation && (!type || deviation_row(*type).is_allan()) : !deviation;
+  }
+
+  double number(const TextRow& row, std::size_t c) const {
+    const TextCell& cell = row.cells[c];
+    if (const auto value = number_in(cell, decimal_)) return *value;
+    throw Error({ErrorKind::input,
+                 "E0311",
+                 fmt::format("{}:{}:{}", file_, row.line, cell.column),
+                 "a number was expected",
+                 cell.text,
+                 ""});
+  }
+
+  // Of the deviation (root), to first order half of the relative sd of its square, which is sqrt(2 / edf) for chi-square.
+  std::optional<double> relative_sd(const TextRow& row, double y) const {
+    const auto cell = [&](const std::optional<std::size_t>& column) {
+      return column ? number_in(row.cells[*column], decimal_) : std::nullopt;
+    };
+    if (const auto dof = cell(columns_.dof); dof && *dof > 0) return 1 / std::sqrt(2 * *dof);
+    const double of_root = columns_.root ? 1 : 0.5;
+    const auto low = cell(columns_.low), high = cell(columns_.high);
+    if (low && high && y > 0 && *high > *low) return of_root * (*high - *low) / (2 * y);
+    if (const auto sd = cell(columns_.relative); sd && *sd > 0)
+      return of_root * *sd * (columns_.percent ? 0.01 : 1);
+    if (const auto sd = cell(columns_.absolute); sd && *sd > 0 && y > 0) return of_root * *sd / y;
+    return std::nullopt;
+  }
+
+  void keep(std::vector<double>& values,
+            const TextRow& row,
+            const std::optional<std::size_t>& column) const {
+    if (column) values.push_back(number_in(row.cells[*column], decimal_).value_or(kNone));
+  }
+
+  NamedCurve& curve_of(const std::string& name, const std::string& unit, const std::string& kind) {
+    const auto found = std::find_if(curves_.begin(), curves_.end(), [&](const NamedCurve& c) {
+      return c.name == name && c.kind == kind;
+    });
+    if (found != curves_.end()) return *found;
+    NamedCurve& added = curves_.emplace_back();
+    added.name = name;
+    added.unit = unit_under_density(unit);
+    added.curve.is_allan = is_allan_;
+    added.kind = kind;
+    added.value_unit = unit;
+    return curves_.back();
+  }
+
+  std::string file_;
+  Columns columns_;
+  std::size_t width_;
+  char decimal_;
+  bool is_allan_;
+  std::vector<NamedCurve> curves_;
+};
+
+}  // namespace
+
+std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan) {
+  const auto table = read_text_table(path, kMaxBytes);
+  if (!table)
+    throw Error({ErrorKind::input,
+                 "E0801",
+                 path,
+                 fmt::format("a table of curves of more than {} bytes", kMaxBytes),
+                 "",
+                 "is this a log? then leave `curve` out"});
+  const Columns columns = columns_of(table->header.cells, is_allan);
+  if (!columns.x || !(columns.root || columns.power)) return std::nullopt;
+  Reader reader(path, columns, *table, is_allan);
+  for (const TextRow& row : table->rows) reader.take(row);
+  auto curves = reader.finish();
+  if (curves.empty())
+    throw Error({ErrorKind::input,
+                 "E0802",
+                 path,
+                 is_allan ? "the table holds no Allan curve" : "the table holds no spectrum",
+                 "",
+                 is_allan ? "`curve` psd?" : "`curve` allan?"});
+  return CurveTable{std::move(curves), table->bytes, table->sha256};
+}
+
+std::string curve_in_header(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return "";
+  std::optional<TextTable> table;
+  try {
+    table = read_text_table(path, kMaxBytes);
+  } catch (const Error&) {
+    return "";
+  }
+  if (!table) return "";
+  const std::vector<TextCell>& header = table->header.cells;
+  if (find(header, {"curve"}) && find(header, {"x"}) && find(header, {"value"}))
+    return "allan or psd";
+  if (find(header, {"tau_s", "tau", "averaging_time"})) {
+    const Columns c = columns_of(header, true);
+    return c.root || c.power ? "allan" : "";
+  }
+  if (!find(header, {"frequency_hz", "frequency", "freq"})) return "";
+  const Columns c = columns_of(header, false);
+  return c.root || c.power ? "psd" : "";
+}
+
+}  // namespace libchar

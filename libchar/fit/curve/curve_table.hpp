@@ -1,0 +1,41 @@
+#pragma once
+// Curves that another program (or our own allan, psd and characterize) wrote as a table with named columns.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/fit/curve/curve_fit.hpp"
+
+namespace libchar {
+
+struct NamedCurve {
+  std::string name, unit;
+  DigitisedCurve curve;
+  /// Of our own tables, for those who draw them; as long as the curve, or empty where there is no such column. NaN: an empty cell.
+  std::vector<double> low68, high68, low95, high95, model;
+  std::string kind;  ///< in the column `curve`: "oadev", "psd_one_sided"; empty: there is none
+  std::string value_unit;  ///< in the column `unit`, as it stands there
+};
+
+struct CurveTable {
+  std::vector<NamedCurve> curves;
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+/// Curves of a table with a header that names them: averaging time (tau, tau_s, x) or frequency (frequency_hz, frequency, f, x),
+/// values (deviation, adev, oadev, sigma, value; avar, variance; psd), and if present: channel, unit, curve, and what says
+/// how well a value is known, in this order: edf or dof; low68 and high68; rel_err or relative_error (a fraction, or percent when
+/// its header says %; one standard deviation of the value); error, sd or uncertainty (in the unit of the value). One curve for each name in the channel column, in the order of their first rows. Nothing when the header does not
+/// name an abscissa and a value: such a file is a plain table of numbers.
+/// Throws Error(input) with FILE:LINE:COL for a row that does not fit.
+std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan);
+
+/// "allan", "psd" or "allan or psd" where the header of a file can only be that of such a table ("x" and "value" may be a log's); empty
+/// otherwise, and for what is no regular file. Throws nothing about the file.
+std::string curve_in_header(const std::string& path);
+
+}  // namespace libchar

@@ -1,0 +1,373 @@
+// A likelihood weighs every frequency by its information, and nearly all of that is at the top, where it concerns nothing but white
+// noise: a small misfit there is paid for with the slow coefficients. So the noise terms are asked to hold from the slow end up to
+// where they do, together with a shape, ln |H(f)|² = a_1 x + a_2 x² + …, x = (f / f_band)²: of any linear filter with a real impulse
+// response it is even and analytic about f = 0, and |H(0)| = 1 by construction.
+//   1. the whole spectrum, terms alone; 2. with quantization noise, or a filter known by name; 3. cuts every half octave from the
+//   top, orders 0..4 of the shape: the first that passes, with one order more, which takes out the bias that "just passes" leaves;
+//   4. where the band is cut: the same without the broad peaks, if that makes it wider.
+// A band passes when the residuals of its bins (the slowest few aside, where drift lives) and of its top octave and a half are those
+// of noise.
+#include "libchar/fit/detail/band/band.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/fit/detail/band/goodness.hpp"
+#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/record/gauss_markov_means.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kSlowest = 5;      ///< coefficients that a drift falls into
+constexpr std::size_t kFewestBins = 20;  ///< of a band
+constexpr double kTopOctaves = 1.5;
+constexpr double kBandStep = 0.5;  ///< octaves
+constexpr double kDeepCut = 0.25;  ///< of half the rate
+/// Of half the rate: below it hardly a filter has more than the beginning of its slope, and a free shape would take the place of slow noise.
+constexpr double kDeepest = 0.125;
+constexpr double kPeak = 4;        ///< standard deviations that a broad peak stands above its sides
+constexpr std::size_t kSkirt = 2;  ///< bins on each side of it that hold too much of it as well
+constexpr std::size_t kMostLeftOut = 4;  ///< a quarter of the bins
+constexpr std::array<std::uint64_t, 13> kTaps = {2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 64};
+constexpr double kNull = 0.01;  ///< of a filter's power gain
+constexpr auto kQuantizationTerm = static_cast<std::size_t>(Term::quantization);
+constexpr auto kLentTerm = static_cast<std::size_t>(Term::ramp);  ///< to a Gauss-Markov process
+
+double mean_ratio(const NoiseShape& filter, const PowerBin& bin, double rate_hz) {
+  constexpr int kNodes = 17;
+  double ratio = 0;
+  for (int i = 0; i < kNodes; ++i) {
+    const double f = bin.low_hz + (bin.high_hz - bin.low_hz) * (i + 0.5) / kNodes;
+    ratio += shape_ratio(filter, std::min(f, rate_hz / 2), rate_hz) / kNodes;
+  }
+  return ratio;
+}
+
+/// The fit of a band that is being tried.
+struct Trial {
+  Band band;
+  std::vector<std::size_t> index;  ///< of its bins among all
+  std::vector<double> z, ratio;    ///< residuals, and measured over model
+  Mixture theta{};
+  double half_deviance = 0;
+};
+
+std::vector<std::size_t> members(const std::vector<PowerBin>& bins, const Band& band) {
+  std::vector<std::size_t> index;
+  for (std::size_t j = 0; j < bins.size(); ++j)
+    if (band.inside[j] != 0) index.push_back(j);
+  return index;
+}
+
+void judge_band(const std::vector<PowerBin>& bins,
+                std::size_t fitted,
+                const BandOptions& options,
+                Trial& trial) {
+  double slowest_hz = 0;
+  std::size_t slow = 0;
+  // The slowest coefficients of the longest transform come first in frequency, wherever they stand in the list.
+  std::vector<double> frequency;
+  for (const std::size_t j : trial.index) frequency.push_back(bins[j].frequency_hz);
+  std::nth_element(frequency.begin(), frequency.begin() + kSlowest - 1, frequency.end());
+  slowest_hz = frequency[kSlowest - 1];
+  Goodness all, top;
+  for (std::size_t i = 0; i < trial.index.size(); ++i) {
+    const PowerBin& bin = bins[trial.index[i]];
+    const double square = trial.z[i] * trial.z[i];
+    if (bin.frequency_hz <= slowest_hz) {
+      ++slow;
+    } else {
+      all.chi2 += square;
+    }
+    if (bin.high_hz > trial.band.top_hz * std::exp2(-kTopOctaves)) {
+      top.chi2 += square;
+      top.dof += 1;
+    }
+  }
+  all.dof =
+      std::max(1.0, static_cast<double>(trial.index.size() - slow) - static_cast<double>(fitted));
+  all.p = chi_square_tail(all.chi2, all.dof);
+  top.p = chi_square_tail(top.chi2, std::max(1.0, top.dof));
+  trial.band.goodness = all;
+  trial.band.top = top;
+  trial.band.passes = std::min(all.p, top.p) >= options.probability;
+}
+
+std::optional<Trial> tried(const std::vector<PowerBin>& bins,
+                           double rate_hz,
+                           TermSet terms,
+                           const Band& band,
+                           const BandOptions& options,
+                           const ModelPoint* start = nullptr) {
+  Trial trial;
+  trial.band = band;
+  trial.index = members(bins, band);
+  if (trial.index.size() < kFewestBins) return std::nullopt;
+  if (band.quantized) terms[kQuantizationTerm] = true;
+  if (band.tau_s) terms[kLentTerm] = true;
+  const std::vector<PowerBin> inside = bins_of(bins, band, rate_hz);
+  const BinProblem problem = bin_problem(inside, band.orders, band.top_hz);
+  const ScoringResult best = score(problem, terms, start, 1e-6);
+  if (!std::isfinite(best.half_deviance)) return std::nullopt;
+  const Eigen::ArrayXd model = model_of(problem, best.at);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    trial.ratio.push_back(inside[i].energy / model[static_cast<Eigen::Index>(i)]);
+    trial.z.push_back(normal_deviate(trial.ratio.back(), inside[i].dof));
+  }
+  trial.half_deviance = best.half_deviance;
+  trial.theta = best.at.theta;
+  judge_band(bins,
+             count_of(only_positive(best.at.theta)) + static_cast<std::size_t>(band.orders),
+             options,
+             trial);
+  return trial;
+}
+
+Band cut_at(Band band, const std::vector<PowerBin>& bins, double top_hz) {
+  band.top_hz = top_hz;
+  for (std::size_t j = 0; j < bins.size(); ++j)
+    if (bins[j].high_hz > top_hz * (1 + 1e-9)) band.inside[j] = 0;
+  return band;
+}
+
+/// Bins at the zeros of a filter hold what leaks into them from their neighbours.
+void leave_out_nulls(const std::vector<PowerBin>& bins, double rate_hz, Band& band) {
+  for (std::size_t j = 0; j < bins.size(); ++j)
+    if (mean_ratio(band.filter, bins[j], rate_hz) < kNull) band.inside[j] = 0;
+}
+
+/// Most of a narrow filter's band is near its zeros: the differences of neighbouring samples, which live there, must not be several times
+/// what the filter lets through.
+bool explains_nulls(const std::vector<PowerBin>& bins, double rate_hz, const Trial& trial) {
+  constexpr double kTimes = 2, kBeside = 0.5;
+  double inside = 0, outside = 0, expected = 0;
+  for (std::size_t j = 0; j < bins.size(); ++j) {
+    const PowerBin& bin = bins[j];
+    const double sine = std::sin(std::numbers::pi * std::min(bin.frequency_hz / rate_hz, 0.5));
+    const double weight = (bin.high_hz - bin.low_hz) * sine * sine;
+    if (trial.band.inside[j] != 0) {
+      inside += weight * bin.energy;
+      continue;
+    }
+    double model = 0;
+    for (std::size_t i = 0; i < kTerms; ++i) model += trial.theta[i] * bin.unit[i];
+    outside += weight * bin.energy;
+    expected += weight * model * mean_ratio(trial.band.filter, bin, rate_hz);
+  }
+  return outside <= kTimes * expected + kBeside * inside;
+}
+
+/// The named filter that explains most, with the whole spectrum.
+std::optional<Trial> named_filter(const std::vector<PowerBin>& bins,
+                                  double rate_hz,
+                                  const TermSet& terms,
+                                  const BandOptions& options) {
+  std::optional<Trial> best;
+  for (const auto kind : {NoiseShape::Kind::boxcar, NoiseShape::Kind::bartlett})
+    for (const std::uint64_t taps : kTaps) {
+      Band band = whole_band(bins, rate_hz);
+      band.tau_s = options.tau_s;
+      band.filter.kind = kind;
+      band.filter.taps = taps;
+      leave_out_nulls(bins, rate_hz, band);
+      std::optional<Trial> trial = tried(bins, rate_hz, terms, band, options);
+      if (trial && (!best || trial->half_deviance < best->half_deviance)) best = std::move(trial);
+    }
+  return best;
+}
+
+/// Median of measured/model over entries from..to-1, +infinity when there are fewer than three.
+double median_of_ratio(const std::vector<double>& ratio, std::size_t from, std::size_t to) {
+  if (to < from + 3) return std::numeric_limits<double>::infinity();
+  std::vector<double> part(ratio.begin() + static_cast<std::ptrdiff_t>(from),
+                           ratio.begin() + static_cast<std::ptrdiff_t>(to));
+  return median_in_place(part, Middle::upper);
+}
+
+/// Neighbouring bins that stand above those on both sides of them.
+struct BroadPeak {
+  std::size_t from = 0, to = 0;  ///< of a trial's entries, to beyond the last
+  double deviations = 0;         ///< standard deviations of noise
+};
+
+/// A broad peak (vibration, a floor that sways, a wandering line): up to ten bins whose mean, on the scale of the model, is above the median
+/// of the ten bins before as well as of the ten after, so that a slope or a rising end is none.
+BroadPeak highest_peak(const std::vector<PowerBin>& bins, const Trial& trial) {
+  constexpr std::size_t kReach = 10, kLongest = 10;
+  constexpr double kFewestDof = 16, kLowest = 0.02;
+  BroadPeak best;
+  for (std::size_t from = kReach; from < trial.index.size(); ++from) {
+    const double before = median_of_ratio(trial.ratio, from - kReach, from);
+    double sum = 0, dof = 0;
+    for (std::size_t to = from + 1; to <= std::min(from + kLongest, trial.index.size()); ++to) {
+      const PowerBin& bin = bins[trial.index[to - 1]];
+      if (bin.dof < kFewestDof) break;
+      sum += bin.dof * trial.ratio[to - 1];
+      dof += bin.dof;
+      const double after =
+          median_of_ratio(trial.ratio, to, std::min(to + kReach, trial.ratio.size()));
+      const double excess = sum / dof / std::max(before, after) - 1;
+      const double deviations = excess / std::sqrt(2 / dof);
+      if (excess > kLowest && deviations > best.deviations) best = {from, to, deviations};
+    }
+  }
+  return best;
+}
+
+struct Search {
+  const std::vector<PowerBin>& bins;
+  double rate_hz;
+  const TermSet& terms;
+  const BandOptions& options;
+  std::optional<Trial> closest;  ///< of those that did not pass
+
+  std::optional<Trial> at(const Band& band) const {
+    return tried(bins, rate_hz, terms, band, options);
+  }
+
+  void keep_closest(std::optional<Trial> trial) {
+    if (!trial) return;
+    const auto worst = [](const Trial& t) { return std::min(t.band.goodness.p, t.band.top.p); };
+    if (!closest || worst(*trial) > worst(*closest)) closest = std::move(trial);
+  }
+
+  /// The widest band under `from` that passes.
+  std::optional<Band> widest(const Band& from, double top_hz) {
+    for (;; top_hz *= std::exp2(-kBandStep)) {
+      Band band = cut_at(from, bins, top_hz);
+      if (members(bins, band).size() < kFewestBins) return std::nullopt;
+      const int most =
+          top_hz < kDeepest * rate_hz / 2 ? std::min(1, options.most_orders) : options.most_orders;
+      for (band.orders = 0; band.orders <= most; ++band.orders) {
+        std::optional<Trial> trial = at(band);
+        if (trial && trial->band.passes) return trial->band;
+        keep_closest(std::move(trial));
+      }
+    }
+  }
+
+  /// Without its broad peaks and their skirts, the highest first, each seen beside what is left of the others.
+  Band without_peaks(Band band) const {
+    std::size_t most = band.inside.size() / kMostLeftOut;
+    for (bool first = true;; first = false) {
+      const std::optional<Trial> trial = at(band);
+      if (!trial) break;
+      const BroadPeak peak = highest_peak(bins, *trial);
+      const std::size_t from = peak.from - std::min(peak.from, kSkirt);
+      const std::size_t to = std::min(peak.to + kSkirt, trial->index.size());
+      const bool found = peak.deviations > kPeak && to - from <= most;
+      if (!found && !first) break;
+      for (std::size_t i = from; found && i < to; ++i) band.inside[trial->index[i]] = 0;
+      if (found) most -= to - from;
+      // The highest would distort a shape; the lowest are not seen without one.
+      band.orders = options.most_orders;
+    }
+    band.orders = 0;
+    return band;
+  }
+
+  /// `narrow`, or the band without broad peaks where that is twice as wide. What is left of their skirts is a small misfit, and moves the
+  /// coefficients less than a deep cut does: there a smaller probability passes.
+  std::optional<Band> wider_between_peaks(const Band& whole, std::optional<Band> narrow) {
+    const Band holes = without_peaks(whole);
+    if (holes.inside == whole.inside) return narrow;
+    BandOptions lenient = options;
+    lenient.probability = options.misfit;
+    Search eased{bins, rate_hz, terms, lenient, std::nullopt};
+    for (Search* search : {this, &eased}) {
+      const std::optional<Band> found = search->widest(holes, rate_hz / 2);
+      if (found && (!narrow || found->top_hz > 2 * narrow->top_hz)) narrow = found;
+    }
+    return narrow;
+  }
+
+  /// With one order more; a cut band that passes without a shape is halved.
+  Band with_margin(Band band) const {
+    const bool whole = band.top_hz > rate_hz / 2 * 0.99;
+    if (whole && band.orders == 0) return band;
+    Band next = band.orders == 0 ? cut_at(band, bins, band.top_hz / 2) : band;
+    ++next.orders;
+    const std::optional<Trial> trial = at(next);
+    return trial && trial->band.passes ? trial->band : band;
+  }
+};
+
+}  // namespace
+
+Band whole_band(const std::vector<PowerBin>& bins, double rate_hz) {
+  Band band;
+  band.top_hz = rate_hz / 2;
+  band.inside.assign(bins.size(), 1);
+  return band;
+}
+
+std::vector<PowerBin> filtered(std::vector<PowerBin> bins,
+                               const NoiseShape& filter,
+                               double rate_hz) {
+  if (filter.kind == NoiseShape::Kind::none) return bins;
+  for (PowerBin& bin : bins) {
+    const double ratio = mean_ratio(filter, bin, rate_hz);
+    for (double& unit : bin.unit) unit *= ratio;
+  }
+  return bins;
+}
+
+std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& band, double rate_hz) {
+  std::vector<PowerBin> inside;
+  for (std::size_t j = 0; j < bins.size(); ++j)
+    if (band.inside[j] != 0) inside.push_back(bins[j]);
+  if (band.tau_s)
+    for (PowerBin& bin : inside) bin.unit[kLentTerm] = gauss_markov_unit(bin, *band.tau_s, rate_hz);
+  inside = filtered(std::move(inside), band.filter, rate_hz);
+  return band.low_pass ? low_passed(std::move(inside), band.low_pass->corner_hz, rate_hz) : inside;
+}
+
+Band find_band(const std::vector<PowerBin>& bins,
+               double rate_hz,
+               const TermSet& terms,
+               const BandOptions& options) {
+  Band whole = whole_band(bins, rate_hz);
+  whole.tau_s = options.tau_s;
+  Search search{bins, rate_hz, terms, options, std::nullopt};
+  const std::optional<Trial> unshaped = search.at(whole);
+  if (!unshaped) return whole;
+  if (std::min(unshaped->band.goodness.p, unshaped->band.top.p) >= options.probability_unshaped) {
+    Band band = unshaped->band;
+    band.passes = true;
+    return band;
+  }
+  Band quantized = whole;
+  quantized.quantized = true;
+  if (const auto trial = search.at(quantized); trial && trial->band.passes) return trial->band;
+  if (const auto named = named_filter(bins, rate_hz, terms, options);
+      named && named->band.passes && explains_nulls(bins, rate_hz, *named))
+    return named->band;
+  Band low_pass = whole;
+  TermSet offered = terms;
+  offered[kLentTerm] = offered[kLentTerm] || options.tau_s;
+  low_pass.low_pass = fit_low_pass(bins_of(bins, whole, rate_hz), rate_hz, offered);
+  if (low_pass.low_pass)
+    if (const auto trial = search.at(low_pass); trial && trial->band.passes) return trial->band;
+  std::optional<Band> best = search.widest(whole, rate_hz / 2);
+  if (!best || best->top_hz < rate_hz / 2 * 0.99) best = search.wider_between_peaks(whole, best);
+  // One clean record in a hundred is here by chance, and where the chance is in its slow part only a deep cut takes it away.
+  // Filters and motion are told from chance by far less than a millionth.
+  const double chance = std::min(unshaped->band.goodness.p, unshaped->band.top.p);
+  const double left = best ? best->top_hz / (rate_hz / 2) : 0;
+  if ((chance >= options.misfit && left < kDeepCut) ||
+      (chance >= options.clear_misfit && left < kDeepest)) {
+    Band band = unshaped->band;
+    band.passes = true;
+    return band;
+  }
+  if (best) return search.with_margin(*best);
+  return search.closest ? search.closest->band : unshaped->band;
+}
+
+}  // namespace libchar

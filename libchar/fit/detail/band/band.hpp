@@ -1,0 +1,59 @@
+#pragma once
+// Over which frequencies the noise terms, times a shape, describe a record.
+
+#include <optional>
+#include <vector>
+
+#include "libchar/core/coefficient.hpp"
+#include "libchar/core/numeric/noise_shape.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
+#include "libchar/fit/detail/band/low_pass.hpp"
+
+namespace libchar {
+
+/// Bins, the shape that multiplies their expectations, and how well that describes them.
+struct Band {
+  double top_hz = 0;                   ///< bins end here; half the rate where nothing is left out
+  std::vector<char> inside;            ///< of every bin: is it fitted?
+  NoiseShape filter;                   ///< a filter known by name (boxcar, Bartlett), or none
+  int orders = 0;                      ///< of the polynomial of the shape beyond that
+  bool quantized = false;              ///< quantization noise is among the terms
+  std::optional<LowPassFit> low_pass;  ///< a first-order low-pass as well
+  /// correlation time of a Gauss-Markov process that is among the terms, in the column of the ramp
+  std::optional<double> tau_s;
+  bool passes = true;  ///< the residuals are those of noise, or too few to judge
+  Goodness goodness;   ///< of the band, its slowest coefficients left out
+  Goodness top;        ///< of its top octave and a half
+};
+
+struct BandOptions {
+  double probability =
+      0.02;  ///< of more chi-square than in the residuals, below which a band does not pass
+  double probability_unshaped =
+      0.005;  ///< the same for the whole spectrum without a shape: 1 % of clean records fail
+  double misfit = 1e-3;  ///< from here on the whole spectrum is cut at most by two octaves
+  double clear_misfit =
+      1e-6;  ///< and from here on by three: its misfit is said, and widens the intervals
+  int most_orders = 4;
+  std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
+};
+
+/// Every bin, without a shape.
+Band whole_band(const std::vector<PowerBin>& bins, double rate_hz);
+
+/// The widest band, from the slow end up, in which the residuals are those of noise, and in it the fewest orders of the
+/// polynomial, plus one. Broad peaks are left out where that widens it.
+Band find_band(const std::vector<PowerBin>& bins,
+               double rate_hz,
+               const TermSet& terms,
+               const BandOptions& options = {});
+
+/// The bins of a band, expectations times its filter.
+std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& band, double rate_hz);
+
+/// Expectations times a ratio averaged over each bin.
+std::vector<PowerBin> filtered(std::vector<PowerBin> bins,
+                               const NoiseShape& filter,
+                               double rate_hz);
+
+}  // namespace libchar

@@ -1,0 +1,201 @@
+#include "libchar/fit/detail/band/band_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/detail/band/goodness.hpp"
+#include "libchar/fit/detail/curve/coefficients.hpp"
+#include "libchar/fit/detail/record/flicker_phase_means.hpp"
+#include "libchar/fit/detail/record/gauss_markov_means.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kVisible = 0.01;  ///< of a gain's distance from one
+
+std::vector<Interval> stretches_left_out(const std::vector<PowerBin>& bins, const Band& band) {
+  std::vector<Interval> out;
+  for (std::size_t j = 0; j < bins.size(); ++j) {
+    if (band.inside[j] != 0 || bins[j].high_hz > band.top_hz * (1 + 1e-9)) continue;
+    if (!out.empty() && out.back().high >= bins[j].low_hz * (1 - 1e-9) &&
+        out.back().low <= bins[j].low_hz)
+      out.back().high = bins[j].high_hz;
+    else
+      out.push_back({bins[j].low_hz, bins[j].high_hz});
+  }
+  return out;
+}
+
+/// A density over that of the noise terms, at a frequency.
+struct ShapePoint {
+  double frequency_hz = 0;
+  double ratio = 1;
+  double dof = 0;  ///< of the bin it comes from
+};
+
+/// Bins of the last, short block stand among those of all blocks together and scatter more: where a better known one is near they
+/// describe nothing. Sorted by frequency.
+std::vector<ShapePoint> best_known(std::vector<ShapePoint> points) {
+  constexpr double kNear = 1.1, kWorse = 0.2;
+  std::sort(points.begin(), points.end(), [](const ShapePoint& a, const ShapePoint& b) {
+    return a.frequency_hz < b.frequency_hz;
+  });
+  std::vector<ShapePoint> kept;
+  std::size_t first = 0;
+  for (const ShapePoint& point : points) {
+    while (points[first].frequency_hz * kNear < point.frequency_hz) ++first;
+    double most = 0;
+    for (std::size_t i = first;
+         i < points.size() && points[i].frequency_hz < point.frequency_hz * kNear;
+         ++i)
+      most = std::max(most, points[i].dof);
+    if (point.dof >= kWorse * most) kept.push_back(point);
+  }
+  return kept;
+}
+
+/// Where the shape begins to differ from one, every bin from there on.
+NoiseShape measured_shape(std::vector<ShapePoint> points) {
+  NoiseShape shape;
+  points = best_known(std::move(points));
+  const auto first = std::find_if(points.begin(), points.end(), [](const ShapePoint& point) {
+    return std::abs(point.ratio - 1) > kVisible;
+  });
+  for (auto point = first; point != points.end(); ++point) {
+    if (!shape.frequency_hz.empty() && !(point->frequency_hz > shape.frequency_hz.back())) continue;
+    shape.frequency_hz.push_back(point->frequency_hz);
+    shape.ratio.push_back(point->ratio);
+  }
+  if (!shape.ratio.empty()) shape.kind = NoiseShape::Kind::measured;
+  return shape;
+}
+
+}  // namespace
+
+void describe_band(const std::vector<PowerBin>& bins,
+                   const Band& band,
+                   const BinProblem& problem,
+                   const ModelPoint& best,
+                   double rate_hz,
+                   NoiseFit& fit) {
+  fit.band.top_hz = band.top_hz;
+  fit.band.orders = band.orders;
+  fit.band.whole =
+      std::all_of(band.inside.begin(), band.inside.end(), [](char in) { return in != 0; });
+  fit.band.left_out_hz = stretches_left_out(bins, band);
+  Band everywhere = band;
+  everywhere.inside.assign(bins.size(), 1);
+  const std::vector<PowerBin> all = bins_of(bins, everywhere, rate_hz);
+  const Eigen::ArrayXd gain = shape_of(problem, best.shape);
+  fit.residuals = residuals_of(all, best.theta, rate_hz);
+  std::vector<ShapePoint> points;
+  Eigen::Index inside = 0;
+  for (std::size_t j = 0; j < bins.size(); ++j) {
+    FitResidual& residual = fit.residuals[j];
+    residual.inside = band.inside[j] != 0;
+    const bool slow = bins[j].high_hz <= band.top_hz && !residual.inside && bins[j].dof <= 1;
+    if (residual.inside) {
+      const double ratio = gain[inside++];
+      points.push_back({residual.frequency_hz, ratio, residual.dof});
+      residual.model *= ratio;
+      residual.z = normal_deviate(residual.measured / residual.model, residual.dof);
+    } else if (!slow) {
+      points.push_back({residual.frequency_hz, residual.measured / residual.model, residual.dof});
+    }
+  }
+  fit.shape =
+      band.filter.kind != NoiseShape::Kind::none ? band.filter : measured_shape(std::move(points));
+  if (!band.low_pass) return;
+  fit.bandwidth_hz = band.low_pass->corner_hz;
+  const double spread = std::exp(kNormal95 * band.low_pass->log_sd);
+  fit.bandwidth_ci95 =
+      Interval{band.low_pass->corner_hz / spread, band.low_pass->corner_hz * spread};
+  widen_for_joint_parameter(band.low_pass->log_theta_sd, fit);
+}
+
+void add_lines(const std::vector<PowerBin>& clipped,
+               const std::vector<PowerBin>& full,
+               NoiseFit& fit) {
+  constexpr double kCounts =
+      1.02;  ///< power of a bin with its lines over that without, beyond which they count
+  const auto without_lines = [&](const PowerBin& bin) {
+    for (const PowerBin& other : clipped)
+      if (other.low_hz == bin.low_hz && other.high_hz == bin.high_hz) return other.energy;
+    return 0.0;
+  };
+  std::vector<ShapePoint> points;
+  bool any = false;
+  const bool flicker_phase = fit.flicker_phase && fit.flicker_phase->value;
+  const std::vector<double> phase_units =
+      flicker_phase ? flicker_phase_units(full, fit.rate_hz) : std::vector<double>{};
+  for (const PowerBin& bin : full) {
+    double terms = 0;
+    for (std::size_t i = 0; i < kTerms; ++i) terms += fit.theta[i] * bin.unit[i];
+    if (flicker_phase)
+      terms += *fit.flicker_phase->value * *fit.flicker_phase->value *
+               phase_units[static_cast<std::size_t>(&bin - full.data())];
+    if (fit.gauss_markov && fit.gauss_markov->in_model)
+      terms += *fit.gauss_markov->sigma.value * *fit.gauss_markov->sigma.value *
+               gauss_markov_unit(bin, *fit.gauss_markov->tau_s.value, fit.rate_hz);
+    if (fit.bandwidth_hz) terms *= low_pass_gain(bin, *fit.bandwidth_hz, fit.rate_hz).gain;
+    const bool counts = bin.dof > 4 && bin.energy > kCounts * without_lines(bin);
+    any = any || counts;
+    points.push_back(
+        {bin.frequency_hz,
+         counts ? bin.energy / terms : shape_ratio(fit.shape, bin.frequency_hz, fit.rate_hz),
+         bin.dof});
+  }
+  if (any) fit.shape = measured_shape(std::move(points));
+}
+
+void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& fit) {
+  const std::string alarm = "the noise terms alone do not describe the whole spectrum";
+  if (band.quantized)
+    fit.remedies.push_back({"quantization", alarm, "quantization noise added to the model", 1});
+  if (band.low_pass)
+    fit.remedies.push_back({"bandwidth",
+                            alarm,
+                            fmt::format("first-order low-pass with corner {} Hz added to the model",
+                                        brief_text(band.low_pass->corner_hz, 4)),
+                            1});
+  if (band.filter.kind != NoiseShape::Kind::none)
+    fit.remedies.push_back({"shape",
+                            alarm,
+                            fmt::format("the spectrum is that of a {} of {} samples",
+                                        band.filter.kind == NoiseShape::Kind::boxcar
+                                            ? "moving average (or values repeated)"
+                                            : "triangular average",
+                                        band.filter.taps),
+                            1});
+  if (band.orders > 0)
+    fit.remedies.push_back(
+        {"shape",
+         alarm,
+         fmt::format("a filter's shape of {} coefficient{} fitted with the terms",
+                     band.orders,
+                     band.orders == 1 ? "" : "s"),
+         static_cast<std::uint64_t>(band.orders)});
+  const auto left_out =
+      static_cast<std::uint64_t>(std::count(band.inside.begin(), band.inside.end(), 0));
+  // At the zeros of a filter known by name there is nothing to fit.
+  if (left_out > 0 && band.filter.kind == NoiseShape::Kind::none)
+    fit.remedies.push_back({"band",
+                            alarm,
+                            fmt::format("coefficients from below {} Hz, {} of {} bins left out",
+                                        brief_text(band.top_hz, 4),
+                                        left_out,
+                                        bins.size()),
+                            left_out});
+}
+
+std::vector<FitResidual> inside_of(const std::vector<FitResidual>& residuals) {
+  std::vector<FitResidual> inside;
+  for (const FitResidual& residual : residuals)
+    if (residual.inside) inside.push_back(residual);
+  return inside;
+}
+
+}  // namespace libchar

@@ -1,0 +1,213 @@
+#include "libchar/fit/detail/curve/coefficients.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/curve/bounds.hpp"
+#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/curve/profile.hpp"
+#include "libchar/fit/detail/curve/selection.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kUndeterminedAbove =
+    0.30;  ///< bound above which a term counts as not determined (docs/theory/fit.md)
+/// Relative sd below which a dropped term moves no interval (white noise).
+constexpr double kWellKnown = 0.01;
+
+double sd_of_theta(const BinProblem& problem,
+                   const ModelPoint& at,
+                   TermSet terms,
+                   std::size_t term) {
+  terms[term] = true;
+  const TermMatrix covariance = inverse_of(fisher_information(problem, at, terms), terms);
+  return std::sqrt(covariance(static_cast<Eigen::Index>(term), static_cast<Eigen::Index>(term)));
+}
+
+Interval profile_interval(const BinProblem& problem,
+                          const TermSet& terms,
+                          const Optimum& best,
+                          std::size_t term,
+                          double lower_rise) {
+  const double sd = sd_of_theta(problem, best.at, terms, term);
+  return {std::sqrt(profile_lower(problem, terms, best, term, sd, lower_rise)),
+          std::sqrt(profile_upper(problem, terms, best, term, sd, kTwoSided95))};
+}
+
+/// The model of all terms that were offered. A dropped term is not known to be zero: without it the intervals of the
+/// others would pretend that the decision was certain (coverage 85 % instead of 95 % in scene a2 of the theory page).
+struct WithDropped {
+  TermSet terms{};
+  Optimum best;
+  bool any = false;
+};
+
+WithDropped with_dropped(const BinProblem& problem,
+                         const Decision& decision,
+                         const Optimum& reported,
+                         const TermSet& offered) {
+  WithDropped all;
+  all.terms = offered;
+  all.best = reported;
+  all.any = offered != decision.kept;
+  if (all.any) {
+    const ScoringResult full = score(problem, all.terms);
+    all.best = {full.at, full.half_deviance};
+  }
+  return all;
+}
+
+/// One step of Fisher scoring from the maximum over theta >= 0, which lets dropped terms below zero: an efficient estimate of each theta
+/// that no bound and no decision biases (van der Vaart, Asymptotic Statistics (1998), 5.7).
+///   theta = theta_max + I^-1 g,   g_i = sum nu/2 (u - 1) a_i / mu
+/// So it is a sum of chi-squares, sum w_j (u_j - 1) with w = nu/2 (I^-1 a) / mu, and has the skewness sum w³ 8 / nu² over sd³.
+void report_in_all(const BinProblem& problem, const WithDropped& all, Coefficients& terms) {
+  const ModelPoint& at = all.best.at;
+  const TermMatrix covariance = inverse_of(fisher_information(problem, at, all.terms), all.terms);
+  const Eigen::ArrayXd model = model_of(problem, at);
+  const Eigen::ArrayXd shape = shape_of(problem, at.shape);
+  const Eigen::ArrayXd slope = problem.dof / 2 * (problem.energy / model - 1) * shape / model;
+  Eigen::Matrix<double, kTerms, 1> gradient;
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    gradient[k] = all.terms[i] ? (slope * problem.unit.col(k)).sum() : 0;
+  }
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (!all.terms[i]) continue;
+    const double sd = std::sqrt(covariance(k, k));
+    const Eigen::ArrayXd weight =
+        problem.dof / 2 * shape / model * (problem.unit.matrix() * covariance.col(k)).array() / sd;
+    terms[i].in_all = SquareInAll{at.theta[i] + covariance.row(k).dot(gradient),
+                                  sd,
+                                  (8 * weight.cube() / problem.dof.square()).sum()};
+  }
+}
+
+/// Rise of the lower limit of a term that is reported because its likelihood ratio passed the threshold, and called
+/// detected because its relative sd is below kUndeterminedAbove: the stricter of the two, the second on the scale of the
+/// root of the ratio, which grows about as the inverse of the relative sd.
+double lower_rise(double ratio, double relative_sd, double threshold) {
+  const double bound = relative_sd / kUndeterminedAbove;
+  return selected_rise(ratio, bound < 1 ? std::max(threshold, ratio * bound * bound) : threshold);
+}
+
+/// Limits of a term that has no value: it is put back into the model for that.
+void report_limits(const BinProblem& problem,
+                   TermSet terms,
+                   const Optimum& reported,
+                   std::size_t i,
+                   Coefficient& term) {
+  terms[i] = true;
+  const ScoringResult with = score(problem, terms);
+  const bool better = with.half_deviance <= reported.half_deviance;
+  const Optimum best = better ? Optimum{with.at, with.half_deviance} : reported;
+  const double sd = sd_of_theta(problem, best.at, terms, i);
+  term.upper95 = std::sqrt(profile_upper(problem, terms, best, i, sd, kOneSided95));
+  term.ci95 = {0, std::sqrt(profile_upper(problem, terms, best, i, sd, kTwoSided95))};
+  term.profile = true;
+}
+
+}  // namespace
+
+std::string long_name(Term term) {
+  static constexpr std::array<std::string_view, kTerms> names = {
+      "white noise", "bias instability", "random walk", "quantization noise", "rate ramp"};
+  const auto i = static_cast<std::size_t>(term);
+  return fmt::format("{} {}", names[i], kTermNames[i].letter);
+}
+
+ModelPoint report_coefficients(const BinProblem& problem,
+                               const Decision& decision,
+                               const FitOptions& options,
+                               NoiseFit& fit) {
+  const Polished polished = polish(problem, decision.at);
+  fit.theta = polished.at.theta;
+  fit.converged = decision.converged && polished.converged;
+  fit.iterations = decision.iterations + polished.iterations;
+  const Optimum best{polished.at, polished.half_deviance};
+  const WithDropped all = with_dropped(problem, decision, best, options.terms);
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    for (std::size_t j = 0; j < kTerms; ++j) {
+      fit.covariance[i][j] =
+          polished.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    term = {};
+    if (!options.terms[i]) continue;
+    term.likelihood_ratio = decision.likelihood_ratio[i];
+    const bool ambiguous =
+        decision.flicker_or_walk &&
+        (i == static_cast<std::size_t>(Term::flicker) || i == static_cast<std::size_t>(Term::walk));
+    if (!(fit.theta[i] > 0)) {
+      term.status = decision.kept[i] && ambiguous ? Status::undetermined : Status::not_detected;
+      report_limits(problem, decision.kept, best, i, term);
+      continue;
+    }
+    const double sd = std::sqrt(fit.covariance[i][i]);
+    term.status = ambiguous ? Status::undetermined : Status::detected;
+    term.value = std::sqrt(fit.theta[i]);
+    term.relative_sd = sd / 2;
+    const double spread = std::exp(kNormal95 * sd / 2);
+    term.ci95 = {*term.value / spread, *term.value * spread};
+    term.profile = term.relative_sd > options.profile_above;
+    const double rise =
+        ambiguous ? kTwoSided95
+                  : lower_rise(decision.ratio_in_all[i], term.relative_sd, options.threshold);
+    if (term.profile) term.ci95 = profile_interval(problem, decision.kept, best, i, rise);
+    if (all.any && term.relative_sd > kWellKnown && all.best.at.theta[i] > 0) {
+      const Interval wide = profile_interval(problem, all.terms, all.best, i, rise);
+      term.ci95 = {std::min(term.ci95.low, wide.low), std::max(term.ci95.high, wide.high)};
+      term.profile = true;
+    }
+  }
+  report_in_all(problem, all, fit.term);
+  if (decision.flicker_or_walk) {
+    fit.sentences.push_back(
+        "The record shows slow noise but cannot tell bias instability from random walk: each could "
+        "explain it alone. A longer record can tell.");
+  }
+  return best.at;
+}
+
+void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    if (!term.value || !(log_theta_sd[i] / 2 > term.relative_sd)) continue;
+    term.relative_sd = log_theta_sd[i] / 2;
+    const double spread = std::exp(kNormal95 * term.relative_sd);
+    term.ci95 = {std::min(term.ci95.low, *term.value / spread),
+                 std::max(term.ci95.high, *term.value * spread)};
+    const double ratio = log_theta_sd[i] / std::sqrt(fit.covariance[i][i]);
+    for (std::size_t j = 0; j < kTerms; ++j) {
+      fit.covariance[i][j] *= ratio;
+      fit.covariance[j][i] *= ratio;
+    }
+  }
+}
+
+void report_bounds(const TermSet& fitted, NoiseFit& fit) {
+  const auto bound = cramer_rao(fit.theta, fit.rate_hz, static_cast<double>(fit.samples), fitted);
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    if (!term.value || !bound[i]) continue;
+    term.bound = bound[i];
+    if (*bound[i] > kUndeterminedAbove && term.status == Status::detected) {
+      term.status = Status::undetermined;
+      fit.sentences.push_back(
+          fmt::format("The record is too short for {}: at best it is known to {} (1 sd).",
+                      long_name(static_cast<Term>(i)),
+                      percent_text(*bound[i])));
+    }
+    term.seconds_for_10_percent =
+        seconds_for(static_cast<Term>(i), 0.10, fit.theta, fit.rate_hz, fitted);
+  }
+}
+
+}  // namespace libchar

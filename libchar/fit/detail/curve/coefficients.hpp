@@ -1,0 +1,29 @@
+#pragma once
+// From the maximum of the likelihood to what is reported of each term.
+
+#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/detail/curve/decisions.hpp"
+#include "libchar/fit/detail/curve/polish.hpp"
+#include "libchar/fit/fit_options.hpp"
+#include "libchar/fit/fit_result.hpp"
+
+namespace libchar {
+
+/// Fills term, theta, covariance, converged, iterations and the sentences about what cannot be told
+/// apart; gives back the maximum of the likelihood.
+ModelPoint report_coefficients(const BinProblem& problem,
+                               const Decision& decision,
+                               const FitOptions& options,
+                               NoiseFit& fit);
+
+/// Bounds and record lengths for 10 % of every term with a value; marks those above 30 % as
+/// undetermined.
+void report_bounds(const TermSet& fitted, NoiseFit& fit);
+
+/// Widens sd and intervals for a further parameter that was fitted jointly (the low-pass corner).
+void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit);
+
+/// "bias instability B" for sentences.
+std::string long_name(Term term);
+
+}  // namespace libchar

@@ -1,0 +1,111 @@
+// The limits are the roots of 2 (lnL_max - max over the others of lnL(theta)) = rise, sought in the
+// signed root of the left side, which is nearly linear in ln theta: the secant with a bracket needs
+// four or five profile points, each a warm-started scoring of the other terms.
+#include "libchar/fit/detail/curve/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/fit/detail/band/scoring.hpp"
+
+namespace libchar {
+namespace {
+
+class Profile {
+ public:
+  Profile(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term)
+      : problem_(problem), others_(terms), best_(best), term_(term), warm_(best.at) {
+    others_[term] = false;
+  }
+
+  /// sqrt of the rise of -2 lnL at theta.
+  double root_rise(double theta) {
+    ModelPoint start = warm_;
+    start.theta[term_] = theta;
+    double value = 0;
+    if (count_of(others_) == 0 && problem_.shapes() == 0) {
+      value = half_deviance(problem_, start);
+    } else {
+      const ScoringResult result = score(problem_, others_, &start, 1e-7);
+      value = result.half_deviance;
+      if (std::isfinite(value)) warm_ = result.at;
+    }
+    if (!std::isfinite(value)) return 1e6;
+    return std::sqrt(std::max(0.0, 2 * (value - best_.half_deviance)));
+  }
+
+ private:
+  const BinProblem& problem_;
+  TermSet others_;
+  const Optimum& best_;
+  std::size_t term_;
+  ModelPoint warm_;
+};
+
+/// Root of f between x_in (f < 0) and x_out (f > 0).
+template <typename Function>
+double bracketed_root(Function&& f, double x_in, double f_in, double x_out, double f_out) {
+  for (int i = 0; i < 60; ++i) {
+    double x = x_in + (x_out - x_in) * f_in / (f_in - f_out);
+    const double margin = 0.02 * (x_out - x_in);
+    if (std::abs(x - x_in) < std::abs(margin)) x = x_in + margin;
+    if (std::abs(x_out - x) < std::abs(margin)) x = x_out - margin;
+    const double value = f(x);
+    if (std::abs(value) < 1e-4 || std::abs(x_out - x_in) < 1e-7) return x;
+    (value < 0 ? x_in : x_out) = x;
+    (value < 0 ? f_in : f_out) = value;
+  }
+  return 0.5 * (x_in + x_out);
+}
+
+}  // namespace
+
+double profile_upper(const BinProblem& problem,
+                     const TermSet& terms,
+                     const Optimum& best,
+                     std::size_t term,
+                     double sd,
+                     double rise) {
+  Profile profile(problem, terms, best, term);
+  const double goal = std::sqrt(rise), at = best.at.theta[term];
+  const auto f = [&](double theta) { return profile.root_rise(theta) - goal; };
+  double in = at, f_in = -goal;
+  double step = goal * sd;
+  double out = at + step, f_out = f(out);
+  for (int i = 0; i < 60 && f_out < 0; ++i) {
+    in = out;
+    f_in = f_out;
+    step *= 1.5;
+    out = in + step;
+    f_out = f(out);
+  }
+  return bracketed_root(f, in, f_in, out, f_out);
+}
+
+double profile_lower(const BinProblem& problem,
+                     const TermSet& terms,
+                     const Optimum& best,
+                     std::size_t term,
+                     double sd,
+                     double rise) {
+  Profile profile(problem, terms, best, term);
+  const double goal = std::sqrt(rise), at = best.at.theta[term];
+  if (!(at > 0)) return 0;
+  TermSet others = terms;
+  others[term] = false;
+  if ((count_of(others) > 0 || problem.shapes() > 0) && profile.root_rise(0) <= goal) return 0;
+  const auto f = [&](double log_theta) { return profile.root_rise(std::exp(log_theta)) - goal; };
+  double in = std::log(at), f_in = -goal;
+  double step = goal * std::min(sd / at, 1.0);
+  double out = in - step, f_out = f(out);
+  for (int i = 0; i < 60 && f_out < 0; ++i) {
+    in = out;
+    f_in = f_out;
+    step *= 1.5;
+    out = in - step;
+    f_out = f(out);
+  }
+  return std::exp(bracketed_root(f, in, f_in, out, f_out));
+}
+
+}  // namespace libchar

@@ -1,0 +1,177 @@
+// Temperature first: a warm-up is mostly the temperature's doing, and an event search would take it
+// for itself. Where events are found in what is left, temperature is fitted once more without them:
+// a step is loud at the frequencies of the temperature.
+#include "libchar/fit/detail/record/record_means.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/noise_fit.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kFewestForEvents = 1024;  ///< samples
+constexpr std::size_t kFewestPoints = 64;       ///< of a series of means
+constexpr double kToldApart = 6;                ///< of 2 ln L: odds of twenty to one
+constexpr double kLeastDof = 0.1;  ///< of a bin: what is all but explained weighs next to nothing
+
+bool take_events(const EventSearch& search) {
+  return !search.events.empty() && !search.more && !search.telegraph;
+}
+
+/// `series` makes the series. What cannot be searched is fitted as it is; the fit says itself what
+/// it cannot do.
+template <class Series>
+EventSearch search_events(const FitOptions& options, const Series& series) {
+  if (!options.events || !options.remedies) return {};
+  try {
+    const EventSeries& searched = series();
+    if (searched.value.size() < kFewestPoints) return {};
+    // Phase noise is not among the powers of the search: where it stands, a clock would step all
+    // the time.
+    EventOptions how;
+    how.steps = !options.clock;
+    return find_events(searched, fitted_powers(), how, options.unit);
+  } catch (const Error& error) {
+    if (error.problem().kind != ErrorKind::numeric) throw;
+    return {};
+  }
+}
+
+EventSearch search_record(std::span<const double> record,
+                          double rate_hz,
+                          const FitOptions& options,
+                          const EventSeries* known) {
+  if (record.size() < kFewestForEvents) return {};
+  EventSeries own;
+  return search_events(options, [&]() -> const EventSeries& {
+    if (known == nullptr) own = event_series(record, rate_hz);
+    return known != nullptr ? *known : own;
+  });
+}
+
+std::vector<double> less(std::span<const double> record,
+                         double rate_hz,
+                         const EventSearch* search,
+                         const std::optional<TemperatureEffect>& temperature) {
+  std::vector<double> left(record.begin(), record.end());
+  if (search != nullptr) subtract_events(search->events, rate_hz, left);
+  if (temperature) add_temperature_effect(*temperature, -1, left);
+  return left;
+}
+
+bool moves(const std::optional<TemperatureEffect>& effect) {
+  return effect && effect->order > 0;
+}
+
+void report_temperature(const TemperatureEffect& effect, const FitOptions& options, NoiseFit& fit) {
+  fit.temperature = effect;
+  fit.sentences.push_back(temperature_sentence(effect, options.unit));
+  if (effect.order == 0) return;
+  fit.remedies.push_back(
+      {"temperature",
+       fmt::format("2 ln L rises by {:.1f}, by chance with probability {}; asked for",
+                   effect.gain,
+                   brief_text(effect.p, 2)),
+       fmt::format("a polynomial of order {} taken out of the record before the noise was fitted",
+                   effect.order),
+       1});
+  for (const Term term : {Term::flicker, Term::walk}) {
+    const auto i = static_cast<std::size_t>(term);
+    if (fit.term[i].status == Status::not_fitted) continue;
+    fit.sentences.push_back(fmt::format("With temperature left in, {} would be {}; it is {}.",
+                                        kTermNames[i].letter,
+                                        coefficient_text(effect.without[i]),
+                                        coefficient_text(fit.term[i])));
+  }
+}
+
+void report_events(const RecordMeans& means, NoiseFit& fit) {
+  const EventSearch& search = means.search;
+  for (const std::string& sentence : search.sentences) fit.sentences.push_back(sentence);
+  // What stayed in is not noise, and the coefficients hold it.
+  if (search.more || search.telegraph)
+    for (Coefficient& term : fit.term)
+      if (term.status == Status::detected) term.status = Status::undetermined;
+  if (!means.events_taken) return;
+  fit.events = search.events;
+  for (const Event& event : fit.events)
+    fit.remedies.push_back({std::string(event_name(event.kind)),
+                            fmt::format("score {}, above {} by chance in 0.3 % of records",
+                                        brief_text(event.score),
+                                        brief_text(event.threshold)),
+                            "taken out of the record before the noise was fitted",
+                            1});
+}
+
+}  // namespace
+
+RecordMeans without_means(std::span<const double> record,
+                          double rate_hz,
+                          const FitOptions& options,
+                          const TemperatureRecord* temperature,
+                          const EventSeries* series) {
+  RecordMeans out;
+  if (temperature != nullptr)
+    out.temperature = find_temperature_effect(record, rate_hz, *temperature);
+  const std::vector<double> warm = moves(out.temperature)
+                                       ? less(record, rate_hz, nullptr, out.temperature)
+                                       : std::vector<double>{};
+  out.search = warm.empty() ? search_record(record, rate_hz, options, series)
+                            : search_record(warm, rate_hz, options, nullptr);
+  out.events_taken = take_events(out.search);
+  const EventSearch* events = out.events_taken ? &out.search : nullptr;
+  if (temperature != nullptr && events != nullptr) {
+    TemperatureEffect again =
+        find_temperature_effect(less(record, rate_hz, events, std::nullopt), rate_hz, *temperature);
+    if (again.order > 0) out.temperature = std::move(again);
+  }
+  if (events != nullptr || moves(out.temperature))
+    out.samples = less(record, rate_hz, events, out.temperature);
+  if (!moves(out.temperature)) return out;
+  FitOptions without = options;
+  without.second_opinion = false;
+  const NoiseFit left_in = fit_record(record, rate_hz, nullptr, without);
+  out.temperature->without = left_in.term;
+  for (const Event& event : left_in.events)
+    if (event.kind != EventKind::step &&
+        event.score * event.score > out.temperature->gain - kToldApart)
+      out.temperature->like_drift = true;
+  return out;
+}
+
+RecordMeans means_in(const EventSeries& series, const FitOptions& options) {
+  RecordMeans out;
+  out.search = search_events(options, [&]() -> const EventSeries& { return series; });
+  out.events_taken = take_events(out.search);
+  return out;
+}
+
+void count_spent(const TemperatureEffect& effect, double duration_s, std::vector<PowerBin>& bins) {
+  std::vector<double> sum(effect.leverage.size() + 1, 0.0);
+  for (std::size_t k = 0; k < effect.leverage.size(); ++k) sum[k + 1] = sum[k] + effect.leverage[k];
+  // Coefficient k = 1.. stands for frequencies from k - 1/2 to k + 1/2 over twice the duration.
+  const auto below = [&](double frequency_hz) {
+    const double at = std::clamp(
+        2 * duration_s * frequency_hz - 0.5, 0.0, static_cast<double>(effect.leverage.size()));
+    const auto i = static_cast<std::size_t>(at);
+    return sum[i] + (i + 1 < sum.size() ? (at - std::floor(at)) * (sum[i + 1] - sum[i]) : 0);
+  };
+  for (PowerBin& bin : bins) {
+    const double left = std::max(kLeastDof, bin.dof - (below(bin.high_hz) - below(bin.low_hz)));
+    bin.energy *= bin.dof / left;
+    bin.dof = left;
+  }
+}
+
+void report_means(const RecordMeans& means, const FitOptions& options, NoiseFit& fit) {
+  if (means.temperature) report_temperature(*means.temperature, options, fit);
+  report_events(means, fit);
+}
+
+}  // namespace libchar

@@ -1,0 +1,40 @@
+#pragma once
+// How a record is divided in transforms.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libchar/fit/detail/record/pooled_power.hpp"
+#include "libchar/fit/record/pooled_sums.hpp"
+
+namespace libchar {
+
+inline constexpr std::uint64_t kLeftToMeans =
+    16;  ///< coefficients of a block that the series of means covers
+inline constexpr std::uint64_t kMeansPerBlock = 64;
+inline constexpr std::uint64_t kSmallestTransform =
+    8;  ///< shorter segments carry nothing worth their edge effects
+inline constexpr std::uint64_t kLongGap = 4096;  ///< shorter gaps are closed up
+
+/// The first coefficient of a transform of `length` points that blocks of `block` such points do
+/// not leave to the series of their means.
+std::uint64_t first_kept(std::uint64_t length, std::uint64_t block);
+/// One behind the last coefficient of a series of `points` means, each of `per_mean`, that blocks
+/// of `block` leave to it.
+std::uint64_t end_of_left(std::uint64_t points, std::uint64_t per_mean, std::uint64_t block);
+
+/// Squared coefficients first … end-1 of one transform of all points.
+PooledPower record_power(std::span<const double> points,
+                         std::uint64_t spacing,
+                         std::uint64_t first,
+                         std::uint64_t end);
+
+/// Means of transforms of `length` points from coefficient `first` on; nothing without a transform.
+void append_pooled(const PooledSums& sums,
+                   std::uint64_t length,
+                   std::uint64_t spacing,
+                   std::uint64_t first,
+                   std::vector<PooledPower>& out);
+
+}  // namespace libchar

@@ -1,0 +1,53 @@
+#pragma once
+// A record of any length as means on its own clock, in constant memory: what events, motion and
+// slow changes are looked for in.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libchar/core/numeric/state_archive.hpp"
+#include "libchar/fit/signs/event_series.hpp"
+
+namespace libchar {
+
+/// Means of what is present of 1, 2, 4… samples; at most 2^16 of them.
+class MeanMeter {
+ public:
+  MeanMeter() = default;
+  /// `per_mean`: samples in a mean at first, a power of two.
+  explicit MeanMeter(std::uint64_t per_mean) : per_mean_(per_mean) {}
+  void push(std::span<const double> samples);
+  /// The samples that `later` has seen follow directly. What is here must be a whole number of its
+  /// means.
+  void join(MeanMeter later);
+  /// Of the record times a factor.
+  void scale(double factor);
+
+  /// NaN: none of its samples is present. A last mean of fewer samples is not among them.
+  std::vector<double> means() const;
+  std::uint64_t per_mean() const { return per_mean_; }
+  std::uint64_t samples() const { return means_.size() * per_mean_ + open_samples_; }
+  std::uint64_t missing() const;
+  /// As `event_series` makes it of the samples. Throws Error(numeric) for fewer than 64 means.
+  EventSeries series(double rate_hz) const;
+
+  void write_state(StateWriter& to) const;
+  void read_state(StateReader& from);
+
+ private:
+  struct Mean {
+    double value = 0;
+    std::uint64_t present = 0;
+    void join(const Mean& later);
+  };
+  void close();
+  void halve();
+
+  std::uint64_t per_mean_ = 1;
+  std::vector<Mean> means_;
+  Mean open_;  ///< of the samples that fill no mean yet
+  std::uint64_t open_samples_ = 0;
+};
+
+}  // namespace libchar

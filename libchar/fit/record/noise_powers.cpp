@@ -1,0 +1,132 @@
+#include "libchar/fit/record/noise_powers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
+#include "libchar/fit/detail/band/goodness.hpp"
+#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/events/series_powers.hpp"
+#include "libchar/spectrum/fft.hpp"
+
+namespace libchar {
+
+namespace {
+
+/// Log bins as of the noise fit: single coefficients to 24, then eight an octave.
+std::vector<std::size_t> bin_edges(std::size_t n) {
+  std::vector<std::size_t> edge;
+  for (std::size_t k = 0; k < n;
+       k = std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * 1.0905)))
+    edge.push_back(k);
+  edge.push_back(n);
+  return edge;
+}
+
+double mean_of(std::span<const double> values, std::size_t from, std::size_t to) {
+  double sum = 0;
+  for (std::size_t k = from; k < to; ++k) sum += values[k];
+  return sum / static_cast<double>(to - from);
+}
+
+constexpr std::array kSeriesTerms = {Term::white, Term::flicker, Term::walk};
+
+/// What the noise terms of theta = 1 put into the coefficients of a series of a length, and into its bins: the same whatever is taken out
+/// of the series.
+struct SeriesUnits {
+  std::uint64_t points = 0, per_point = 0;
+  double step_s = 0;
+  std::array<std::vector<double>, kSeriesTerms.size()> power;  ///< k = 1..n-1 at [k-1]
+  std::vector<std::size_t> edge;
+  std::vector<PowerBin> bins;  ///< without energies
+};
+
+double rate_of(const EventSeries& series) {
+  return static_cast<double>(series.per_point) / series.step_s;
+}
+
+SeriesUnits units_of(const EventSeries& series) {
+  SeriesUnits units;
+  units.points = series.value.size();
+  units.per_point = series.per_point;
+  units.step_s = series.step_s;
+  std::vector<std::vector<double>> power =
+      at_every_k(units.points, kSeriesTerms.size(), [&](double k, std::span<double> out) {
+        const auto unit = mean_unit_powers(k, units.points, series.per_point, 1 / rate_of(series));
+        for (std::size_t i = 0; i < kSeriesTerms.size(); ++i)
+          out[i] = unit[static_cast<std::size_t>(kSeriesTerms[i])];
+      });
+  std::move(power.begin(), power.end(), units.power.begin());
+  units.edge = bin_edges(units.points - 1);
+  for (std::size_t b = 0; b + 1 < units.edge.size(); ++b) {
+    PowerBin bin;
+    bin.dof = static_cast<double>(units.edge[b + 1] - units.edge[b]);
+    for (std::size_t i = 0; i < kSeriesTerms.size(); ++i)
+      bin.unit[static_cast<std::size_t>(kSeriesTerms[i])] =
+          mean_of(units.power[i], units.edge[b], units.edge[b + 1]);
+    units.bins.push_back(bin);
+  }
+  return units;
+}
+
+/// Bins of a series for white noise, flicker and walk, slow ones first.
+std::vector<PowerBin> bins_of(const EventSeries& series, const SeriesUnits& units) {
+  Dct dct(units.points);
+  const std::span<const double> c = dct.transform(series.value).subspan(1);
+  std::vector<double> square(c.size());
+  for (std::size_t k = 0; k < c.size(); ++k) square[k] = c[k] * c[k];
+  std::vector<PowerBin> bins = units.bins;
+  for (std::size_t b = 0; b < bins.size(); ++b)
+    bins[b].energy = mean_of(square, units.edge[b], units.edge[b + 1]);
+  return bins;
+}
+
+std::vector<double> powers_of(const Mixture& theta, const SeriesUnits& units) {
+  std::vector<double> power(units.points - 1);
+  const auto& [white, flicker, walk] = units.power;
+  for (std::size_t k = 0; k < power.size(); ++k)
+    power[k] = theta[static_cast<std::size_t>(Term::white)] * white[k] +
+               theta[static_cast<std::size_t>(Term::flicker)] * flicker[k] +
+               theta[static_cast<std::size_t>(Term::walk)] * walk[k];
+  return power;
+}
+
+/// Does the mixture describe the bins?
+bool describes(const std::vector<PowerBin>& bins, const Mixture& theta) {
+  constexpr double kProbability = 1e-3;
+  double chi2 = 0;
+  for (const PowerBin& bin : bins) {
+    double model = 0;
+    for (std::size_t i = 0; i < kTerms; ++i) model += theta[i] * bin.unit[i];
+    const double z = normal_deviate(bin.energy / model, bin.dof);
+    chi2 += z * z;
+  }
+  return chi_square_tail(chi2, static_cast<double>(bins.size())) > kProbability;
+}
+
+}  // namespace
+
+// From the slow end up: a filter's slope at the top has ten thousand coefficients and would bend the slow noise to its own use.
+NoisePowers fitted_powers() {
+  const auto kept = std::make_shared<SeriesUnits>();
+  return [kept](const EventSeries& series) {
+    constexpr std::size_t kFewestBins = 32, kHalfOctave = 4;
+    if (kept->points != series.value.size() || kept->per_point != series.per_point ||
+        kept->step_s != series.step_s)
+      *kept = units_of(series);
+    std::vector<PowerBin> bins = bins_of(series, *kept);
+    const TermSet terms = {true, true, true, false, false};
+    ScoringResult fit = score(bin_problem(bins), terms);
+    while (bins.size() >= kFewestBins + kHalfOctave && !describes(bins, fit.at.theta)) {
+      bins.resize(bins.size() - kHalfOctave);
+      fit = score(bin_problem(bins), terms);
+    }
+    return powers_of(fit.at.theta, *kept);
+  };
+}
+
+}  // namespace libchar

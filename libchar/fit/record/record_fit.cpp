@@ -1,0 +1,179 @@
+// A record becomes bins and a fit: as one exact transform where it fits into a leaf, by the sums
+// over its leaves where it does not. Which of both depends on its length only, so that whoever has
+// the samples, and however many at a time, finds the same bits.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/numeric/present.hpp"
+#include "libchar/fit/detail/band/bridge.hpp"
+#include "libchar/fit/detail/band/heavy_tails.hpp"
+#include "libchar/fit/detail/record/record_means.hpp"
+#include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/remedies.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::uint64_t kMeansOfPoint = 8;  ///< from which on terms of a pyramid start often enough
+constexpr double kMostOfEvents = 0.2;       ///< share of a point's variance
+
+/// Allan variance of events: of a step from all starts, of drifts from their middle slope.
+double event_variance(std::span<const Event> events, double rate_hz, double samples, double m) {
+  double sum = 0;
+  const double terms = std::max(1.0, samples - 2 * m + 1), tau_s = m / rate_hz;
+  for (const Event& event : events) {
+    if (event.kind == EventKind::step)
+      sum += event.size * event.size * (2 * m * m + 1) / (6 * m * terms);
+    if (event.kind == EventKind::ramp) sum += 0.5 * std::pow(event.slope * tau_s, 2);
+    if (event.kind == EventKind::warm_up) {
+      const double fall = -std::expm1(-tau_s / event.tau_s);
+      sum += 0.25 * std::pow(event.size * event.tau_s / tau_s * fall * fall, 2) * event.tau_s *
+             rate_hz / samples;
+    }
+  }
+  return sum;
+}
+
+/// The octaves of a record without its events: the long ones from its means, of the short ones what
+/// is hardly theirs.
+AllanCurve curve_without(const FittedSums& sums, std::span<const Event> events, double rate_hz) {
+  AllanCurve curve = octave_curve(sums.allan, 1 / rate_hz);
+  const std::uint64_t per_mean = sums.means.per_mean(), from = kMeansOfPoint * per_mean;
+  std::erase_if(curve.points, [&](AllanPoint& point) {
+    const double variance = point.deviation * point.deviation;
+    const double of_events = event_variance(
+        events, rate_hz, static_cast<double>(curve.samples), static_cast<double>(point.m));
+    if (point.m >= from || of_events > kMostOfEvents * variance) return true;
+    point.deviation = std::sqrt(variance - of_events);
+    return false;
+  });
+  std::vector<double> means = sums.means.means();
+  const auto length = static_cast<double>(per_mean);
+  for (std::size_t i = 0; i < means.size(); ++i)
+    means[i] -= event_mean(events, rate_hz, static_cast<double>(i) * length, length);
+  for (AllanPoint point : pyramid_deviation(means, length / rate_hz).points) {
+    point.m *= per_mean;
+    if (point.m >= from) curve.points.push_back(point);
+  }
+  return curve;
+}
+
+/// What is done about spikes, by all leaves together.
+SpikeAnswer spikes_of(const RecordSums& sums, std::uint64_t samples, const FitOptions& options) {
+  if (!options.remedies || !sums.cleaned || !options.difference_kurtosis) return {};
+  const double alarm = spike_alarm(samples);
+  if (!(*options.difference_kurtosis > alarm)) return {};
+  return spike_answer(*options.difference_kurtosis, alarm, sums.spikes);
+}
+
+RecordMeans means_of(const FittedSums& sums, double rate_hz, const FitOptions& options) {
+  if (!options.events || !options.remedies) return {};
+  try {
+    return means_in(sums.means.series(rate_hz), options);
+  } catch (const Error& error) {  // hardly a mean is present
+    if (error.problem().kind != ErrorKind::numeric) throw;
+    return {};
+  }
+}
+
+bool has_step(std::span<const Event> events) {
+  return std::any_of(events.begin(), events.end(), [](const Event& event) {
+    return event.kind == EventKind::step;
+  });
+}
+
+NoiseFit fit_whole(std::span<const double> record,
+                   double rate_hz,
+                   const AllanCurve* allan,
+                   const FitOptions& options,
+                   FitWorkspace* workspace,
+                   const RecordKnowledge& known) {
+  const DespikedRecord despiked =
+      options.remedies ? without_spikes(record, options.difference_kurtosis) : DespikedRecord{};
+  std::span<const double> data =
+      despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
+  const EventSeries* series = despiked.samples.empty() ? known.series : nullptr;
+  const RecordMeans means = without_means(data, rate_hz, options, known.temperature, series);
+  if (!means.samples.empty()) data = means.samples;
+  AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
+  if (allan != nullptr && data.data() != record.data()) {
+    own = pyramid_deviation(data, 1 / rate_hz);
+    allan = &own;
+  }
+  std::vector<double> filled;
+  const bool as_recorded = data.data() == record.data();
+  const std::uint64_t missing = known.missing ? *known.missing : count_missing(record);
+  const std::uint64_t samples = record.size() - missing;
+  const bool complete = despiked.samples.empty() ? missing == 0 : present_run(data) == data.size();
+  if (options.remedies && !complete) filled = bridged(data);
+  const std::span<const double> present = filled.empty() ? data : std::span<const double>(filled);
+  const std::vector<PooledPower> powers = present.size() > kLeafSamples
+                                              ? powers_of(record_sums(present, false).plain.bins)
+                                              : whole_powers(present);
+  NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace, means.temperature);
+  if (!options.clock) {
+    const bool counted = options.difference_kurtosis && as_recorded;
+    widen_for_tails(
+        counted ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
+  }
+  report_means(means, options, fit);
+  add_spike_answer(despiked.answer, fit);
+  if (options.remedies && options.stationarity) {
+    fit.stationarity = test_stationarity(data, rate_hz, fit);
+    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+  }
+  return fit;
+}
+
+}  // namespace
+
+NoiseFit fit_sums(RecordSums sums,
+                  double rate_hz,
+                  const AllanCurve* allan,
+                  const FitOptions& options,
+                  FitWorkspace* workspace) {
+  const std::uint64_t samples = sums.plain.allan.samples - sums.plain.allan.missing;
+  const SpikeAnswer answer = spikes_of(sums, samples, options);
+  const bool cleaned = answer.remedy.has_value();
+  FittedSums& used = cleaned ? *sums.cleaned : sums.plain;
+  const RecordMeans means = means_of(used, rate_hz, options);
+  const std::span<const Event> events =
+      means.events_taken ? std::span<const Event>(means.search.events) : std::span<const Event>();
+  AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
+  if (allan != nullptr && (cleaned || !events.empty())) {
+    own = events.empty() ? octave_curve(used.allan, 1 / rate_hz)
+                         : curve_without(used, events, rate_hz);
+    allan = &own;
+  }
+  const std::vector<PooledPower> powers = powers_of(std::move(used.bins), events, rate_hz);
+  NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace);
+  // Spikes and steps are in the kurtosis of the differences; what it would be without them is not
+  // known.
+  if (!options.clock && options.difference_kurtosis && !cleaned && !has_step(events))
+    widen_for_tails(*options.difference_kurtosis, samples, fit);
+  report_means(means, options, fit);
+  add_spike_answer(answer, fit);
+  if (options.remedies && options.stationarity) {
+    fit.stationarity = test_stationarity(used, events, rate_hz, fit);
+    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+  }
+  return fit;
+}
+
+NoiseFit fit_record(std::span<const double> record,
+                    double rate_hz,
+                    const AllanCurve* allan,
+                    const FitOptions& options,
+                    FitWorkspace* workspace,
+                    const RecordKnowledge& known) {
+  if (record.size() <= kLeafSamples || known.temperature != nullptr)
+    return fit_whole(record, rate_hz, allan, options, workspace, known);
+  FitOptions chosen = options;
+  if (!chosen.difference_kurtosis) chosen.difference_kurtosis = kurtosis_of_differences(record);
+  return fit_sums(record_sums(record, options.remedies), rate_hz, allan, chosen, workspace);
+}
+
+}  // namespace libchar

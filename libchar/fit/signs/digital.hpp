@@ -1,0 +1,100 @@
+#pragma once
+// What the converter and the link did to the samples: rails, repeated values, steps of the
+// converter above the noise.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/core/numeric/state_archive.hpp"
+#include "libchar/fit/fit_result.hpp"
+
+namespace libchar {
+
+/// Samples at the largest or smallest value, more than a tail of noise puts there.
+struct Rail {
+  double value = 0;
+  bool high = true;
+  double share = 0;  ///< of the samples
+};
+
+/// Every value is recorded several times: the log is polled faster than the sensor gives values.
+struct HeldValues {
+  double times = 1;           ///< on average
+  double sensor_rate_hz = 0;  ///< rate of the log / times
+};
+
+/// The noise of a sample is less than the converter's step.
+struct Staircase {
+  double step = 0;
+  double noise = 0;  ///< standard deviation between samples; an upper bound where `bounded`
+  bool bounded = false;
+};
+
+struct DigitalFaults {
+  std::vector<Rail> rails;
+  std::optional<HeldValues> held;
+  std::optional<Staircase> staircase;
+  std::vector<std::string> sentences;
+};
+
+/// Extremes of a record, how often it is at them, and how often it repeats a value.
+struct ValueCensus {
+  double low = 0, high = 0;  ///< low > high: no value at all
+  std::uint64_t at_low = 0, at_high = 0, repeats = 0;
+};
+
+ValueCensus value_census(std::span<const double> record);
+
+/// Lengths of the runs of one value, but for the first and the last: how often which, and how far
+/// apart the repeats are.
+struct ValueRuns {
+  std::vector<double> of_length;  ///< [length], up to 1024; empty: nothing was counted
+  double runs = 0, samples = 0;
+  double repeats = 0, spacing = 0, spacing2 = 0;
+};
+
+/// What is looked at of the samples of a leaf, or of several: their runs, where values repeat at
+/// all, and rails.
+struct DigitalSums {
+  struct AtRail {
+    double value = 0;
+    double count = 0;  ///< 0: no rail
+  };
+  double present = 0;
+  AtRail low, high;
+  ValueRuns runs;
+};
+
+/// `census` of the same samples, and how many of them are missing.
+DigitalSums digital_sums(std::span<const double> samples,
+                         const ValueCensus& census,
+                         std::uint64_t missing);
+/// Adds those of the leaf that follows.
+void join(DigitalSums& sums, const DigitalSums& later);
+void write_state(const DigitalSums& sums, StateWriter& to);
+DigitalSums read_digital_sums(StateReader& from);
+
+/// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`).
+/// `census` of the record. No finding in a record of noise that is sampled and rounded finely,
+/// whatever its length.
+DigitalFaults find_digital_faults(const DigitalSums& sums,
+                                  const ValueCensus& census,
+                                  double rate_hz,
+                                  std::optional<double> step = {},
+                                  std::string_view unit = {});
+
+/// The same of samples in memory.
+DigitalFaults find_digital_faults(std::span<const double> record,
+                                  double rate_hz,
+                                  std::optional<double> step = {},
+                                  std::string_view unit = {});
+
+/// Coefficients of a record that shows the converter's rounding (a staircase) or its rails instead
+/// of the noise are a misfit: their intervals reach to what the noise may be.
+void doubt_digital(const DigitalFaults& faults, NoiseFit& fit);
+
+}  // namespace libchar

@@ -1,0 +1,26 @@
+#pragma once
+// A record as means of many samples, for searches that look at all of it.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libchar/core/numeric/interval.hpp"
+
+namespace libchar {
+
+/// A record as the search sees it: evenly spaced values, each the mean of `per_point` samples; without missing ones.
+struct EventSeries {
+  std::vector<double> value;
+  double start_s = 0;                ///< of the first value: the record may begin with missing ones
+  double step_s = 0;                 ///< between values
+  std::uint64_t per_point = 1;       ///< samples averaged in a value
+  std::vector<Interval> unseen_s{};  ///< stretches that were missing, filled by straight lines
+};
+
+/// At most `points` means over the whole record; NaN samples are left out of them.
+EventSeries event_series(std::span<const double> record,
+                         double rate_hz,
+                         std::uint64_t points = std::uint64_t{1} << 15U);
+
+}  // namespace libchar

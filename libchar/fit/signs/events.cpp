@@ -1,0 +1,446 @@
+// Steps, warm-up and ramp by generalised least squares in the metric of the noise that is fitted beside them. In each round the best
+// place of each kind joins the model by itself, the noise is fitted again without it, and its likelihood ratio
+//   LR = 2 ln L(with it, noise refitted) - 2 ln L(without, noise refitted)
+// is held against the square of the threshold that the look-elsewhere effect of its kind sets (look_elsewhere.hpp): the kind with
+// the largest LR - threshold^2 is taken, if that is positive. Kinds within kNotTold of it are named: steps, warm-ups and ramps
+// imitate one another. Then the round is repeated on what is left.
+#include "libchar/fit/signs/events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/detail/events/drift_scan.hpp"
+#include "libchar/fit/detail/events/look_elsewhere.hpp"
+#include "libchar/fit/detail/events/regression.hpp"
+#include "libchar/fit/detail/events/series_powers.hpp"
+#include "libchar/fit/detail/events/shapes.hpp"
+#include "libchar/fit/detail/events/step_scan.hpp"
+#include "libchar/fit/detail/events/telegraph.hpp"
+#include "libchar/spectrum/fft.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kNotTold = 6;  ///< of LR: odds of twenty to one
+constexpr double kGate =
+    0.7;  ///< share of a threshold that a score must reach to be looked at again
+constexpr double kTauDrop = 3.8415;  ///< chi-square of one degree of freedom, 95 %
+
+/// What a search has in hand.
+struct Hypothesis {
+  Regression fit;
+  std::vector<double> threshold;  ///< of each shape
+  std::vector<double> gained;     ///< LR of each shape when it joined
+  std::vector<std::vector<EventKind>> not_told;
+  std::vector<double> power, weight;
+  double deviance = 0;
+};
+
+struct Search {
+  const EventSeries& series;
+  const NoisePowers& powers;
+  const EventOptions& options;
+  SeriesGrid grid;
+  std::uint64_t margin = 0;
+  std::vector<double> coefficients;  ///< k = 1..n-1 at [k-1]
+  std::vector<EventShape> gaps;      ///< the longest missing stretches, as steps
+};
+
+/// The share of a step that a point has.
+double step_share(const EventShape& shape, double point) {
+  if (shape.bridged > 0) return std::clamp((point - shape.at + 1) / (shape.bridged + 1), 0.0, 1.0);
+  return std::clamp(point + 1 - shape.at, 0.0, 1.0);
+}
+
+/// The series without the shapes.
+EventSeries without(const EventSeries& series, const SeriesGrid& grid, const Regression& fit) {
+  EventSeries left = series;
+  const double per = static_cast<double>(grid.per_point);
+  const double samples = static_cast<double>(grid.points) * per;
+  for (std::size_t i = 0; i < fit.shape.size(); ++i) {
+    const EventShape& shape = fit.shape[i];
+    const double size = fit.size(static_cast<Eigen::Index>(i)), r = std::exp(-1 / shape.tau);
+    double decaying = size;
+    for (std::size_t t = 0; t < left.value.size(); ++t) {
+      const double at = static_cast<double>(t);
+      if (shape.kind == EventKind::step) left.value[t] -= size * step_share(shape, at);
+      if (shape.kind == EventKind::ramp) left.value[t] -= size * at * per / (samples - 1);
+      if (shape.kind == EventKind::warm_up) left.value[t] -= decaying;
+      decaying *= r;
+    }
+  }
+  return left;
+}
+
+void weigh(const Search& search, Hypothesis& now) {
+  now.power = search.powers(without(search.series, search.grid, now.fit));
+  raise_to_measured(now.fit.rest, now.power);
+  now.weight.resize(now.power.size());
+  for (std::size_t k = 0; k < now.power.size(); ++k) now.weight[k] = 1 / now.power[k];
+}
+
+/// Shapes fitted by the weights at hand, noise fitted to what is left, shapes fitted again.
+void fit_both(const Search& search, std::vector<EventShape> shapes, Hypothesis& now) {
+  if (!shapes.empty() || now.weight.empty())
+    now.fit = regress(shapes, search.grid, search.coefficients, now.weight);
+  weigh(search, now);
+  now.fit = regress(std::move(shapes), search.grid, search.coefficients, now.weight);
+  now.deviance = deviance_of(now.fit.rest, now.power);
+}
+
+/// The best place of a kind beside a regression, its score and the threshold of that.
+struct Candidate {
+  EventShape shape;
+  double score = 0, threshold = 0;
+};
+
+/// A step beside which its neighbour wants a share is within the point between them.
+double place_within(double at,
+                    const Search& search,
+                    const Regression& beside,
+                    std::span<const double> weight) {
+  double best = at, best_gain = 0;
+  for (const double low : {at - 1, at}) {
+    std::vector<EventShape> shapes = beside.shape;
+    shapes.push_back({EventKind::step, low});
+    shapes.push_back({EventKind::step, low + 1});
+    const Regression both = regress(shapes, search.grid, search.coefficients, weight);
+    const Eigen::Index last = both.size.size() - 1;
+    const double share = both.size(last) / (both.size(last) + both.size(last - 1));
+    if (!(share > 0 && share < 1)) continue;
+    const double gain =
+        std::abs(both.size(last) + both.size(last - 1)) * std::min(share, 1 - share);
+    if (gain <= best_gain) continue;
+    best_gain = gain;
+    best = low + share;
+  }
+  return best;
+}
+
+/// The best step: between two points, or in a stretch that was missing.
+Candidate best_step(const Search& search,
+                    const Regression& beside,
+                    std::span<const double> weight) {
+  const StepScan scan = scan_steps(beside, weight, search.grid.points, search.margin);
+  Candidate best{{EventKind::step, static_cast<double>(scan.best)},
+                 scan.best_score(),
+                 rough_threshold(scan.distance, search.options.false_alarm / 2, StepScan::kEvery)};
+  std::vector<double> column(search.grid.points - 1);
+  for (const EventShape& gap : search.gaps) {
+    fill_column(gap, search.grid, column);
+    const double score = score_of(beside, column, weight).value();
+    if (std::abs(score) > std::abs(best.score)) {
+      best.shape = gap;
+      best.score = score;
+    }
+  }
+  if (search.grid.per_point > 1 && best.shape.bridged == 0 && std::abs(best.score) > best.threshold)
+    best.shape.at = place_within(best.shape.at, search, beside, weight);
+  return best;
+}
+
+Candidate best_of(EventKind kind,
+                  const Search& search,
+                  const Regression& beside,
+                  std::span<const double> weight) {
+  const double alpha = search.options.false_alarm;
+  if (kind == EventKind::step) return best_step(search, beside, weight);
+  if (kind == EventKind::ramp)
+    return {
+        {kind}, ramp_score(beside, search.grid, weight).value(), rough_threshold({}, alpha / 4)};
+  const WarmUpScan scan = scan_warm_ups(beside, search.grid, weight);
+  return {{kind, 0, 0, refined_tau(scan, beside, search.grid, weight)},
+          scan.score[scan.best],
+          smooth_threshold(scan.distance, alpha / 4)};
+}
+
+/// A hypothesis with a candidate more, placed once more when the noise is fitted without it.
+struct Trial {
+  Candidate candidate;
+  Hypothesis with;
+  double gain = 0;  ///< LR, at most the score squared
+  double worth() const { return gain - candidate.threshold * candidate.threshold; }
+};
+
+Trial try_candidate(const Search& search, const Hypothesis& now, Candidate candidate) {
+  Trial trial{candidate, now, 0};
+  std::vector<EventShape> shapes = now.fit.shape;
+  shapes.push_back(candidate.shape);
+  fit_both(search, shapes, trial.with);
+  const Regression others =
+      regress(now.fit.shape, search.grid, search.coefficients, trial.with.weight);
+  trial.candidate = best_of(candidate.shape.kind, search, others, trial.with.weight);
+  shapes.back() = trial.candidate.shape;
+  fit_both(search, shapes, trial.with);
+  // What the refitted noise alone would gain is no event.
+  const double score =
+      trial.with.fit.size(trial.with.fit.size.size() - 1) / trial.with.fit.sd(shapes.size() - 1);
+  trial.gain = std::min(now.deviance - trial.with.deviance, score * score);
+  return trial;
+}
+
+std::vector<EventKind> offered(const Search& search, const Hypothesis& now) {
+  const auto has = [&](EventKind kind) {
+    return std::any_of(now.fit.shape.begin(), now.fit.shape.end(), [&](const EventShape& shape) {
+      return shape.kind == kind;
+    });
+  };
+  std::vector<EventKind> kinds;
+  if (search.options.steps) kinds.push_back(EventKind::step);
+  if (search.options.warm_up && !has(EventKind::warm_up)) kinds.push_back(EventKind::warm_up);
+  if (search.options.ramp && !has(EventKind::ramp)) kinds.push_back(EventKind::ramp);
+  return kinds;
+}
+
+/// The next event, if there is one.
+std::optional<Trial> next_event(const Search& search, const Hypothesis& now) {
+  std::vector<Trial> trials;
+  for (const EventKind kind : offered(search, now)) {
+    const Candidate candidate = best_of(kind, search, now.fit, now.weight);
+    if (std::abs(candidate.score) < kGate * candidate.threshold) continue;
+    trials.push_back(try_candidate(search, now, candidate));
+  }
+  const auto best =
+      std::max_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
+        return a.worth() < b.worth();
+      });
+  if (best == trials.end() || best->worth() <= 0) return std::nullopt;
+  std::vector<EventKind> not_told;
+  for (const Trial& other : trials)
+    if (&other != &*best && other.worth() > best->worth() - kNotTold)
+      not_told.push_back(other.candidate.shape.kind);
+  best->with.threshold.push_back(best->candidate.threshold);
+  best->with.gained.push_back(best->gain);
+  best->with.not_told.push_back(std::move(not_told));
+  return std::move(*best);
+}
+
+/// Whether shape i may have leaned on what the newest shape explains: of steps only the nearest on either side.
+bool beside_newest(const std::vector<EventShape>& shapes, std::size_t i) {
+  const EventShape &newest = shapes.back(), &shape = shapes[i];
+  if (shape.kind != EventKind::step || newest.kind != EventKind::step) return true;
+  return std::none_of(shapes.begin(), shapes.end() - 1, [&](const EventShape& other) {
+    const bool same_side = (other.at - newest.at) * (shape.at - newest.at) > 0;
+    return other.kind == EventKind::step && same_side &&
+           std::abs(other.at - newest.at) < std::abs(shape.at - newest.at);
+  });
+}
+
+/// What was found before is placed once more beside the newest, and that beside them.
+void place_again(const Search& search, Hypothesis& now) {
+  if (now.fit.shape.size() < 2) return;
+  std::vector<EventShape> shapes = now.fit.shape;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (shapes[i].kind == EventKind::ramp || !beside_newest(shapes, i)) continue;
+    std::vector<EventShape> others = shapes;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const Regression beside = regress(others, search.grid, search.coefficients, now.weight);
+    shapes[i] = best_of(shapes[i].kind, search, beside, now.weight).shape;
+  }
+  fit_both(search, std::move(shapes), now);
+}
+
+/// What has become less than its threshold beside the others goes.
+void drop_weak(const Search& search, Hypothesis& now) {
+  for (std::size_t i = 0; i + 1 < now.fit.shape.size();) {
+    const double score = now.fit.size(static_cast<Eigen::Index>(i)) / now.fit.sd(i);
+    if (std::abs(score) >= kGate * now.threshold[i]) {
+      ++i;
+      continue;
+    }
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    std::vector<EventShape> shapes = now.fit.shape;
+    shapes.erase(shapes.begin() + at);
+    now.threshold.erase(now.threshold.begin() + at);
+    now.gained.erase(now.gained.begin() + at);
+    now.not_told.erase(now.not_told.begin() + at);
+    fit_both(search, std::move(shapes), now);
+  }
+}
+
+Interval step_interval(const Search& search,
+                       const Regression& others,
+                       const Hypothesis& now,
+                       const EventShape& step) {
+  // It is not known where in a missing stretch, or in a mean, it was.
+  if (step.bridged > 0) return {step.at, step.at + step.bridged};
+  const StepScan scan = scan_steps(others, now.weight, search.grid.points, search.margin);
+  const Interval place = step_place(scan, step.at, search.margin);
+  const double within = search.grid.per_point > 1 ? 1 : 0;
+  return {std::min(place.low - within, step.at), std::max(place.high + within, step.at)};
+}
+
+void bound_tau(const Search& search,
+               const Regression& others,
+               const Hypothesis& now,
+               Event& event) {
+  const double step_s = search.series.step_s;
+  const WarmUpScan scan = scan_warm_ups(others, search.grid, now.weight);
+  const double limit = std::pow(std::abs(scan.score[scan.best]), 2) - kTauDrop;
+  const auto in = [&](std::size_t i) {
+    return scan.score[i] * scan.score[scan.best] > 0 && scan.score[i] * scan.score[i] >= limit;
+  };
+  std::size_t low = scan.best, high = scan.best;
+  while (low > 0 && in(low)) --low;
+  while (high + 1 < scan.tau.size() && in(high)) ++high;
+  event.tau_ci95 = {scan.tau[low] * step_s,
+                    high + 1 == scan.tau.size() && in(high) ? 0 : scan.tau[high] * step_s};
+}
+
+/// The sixteen longest missing stretches of at least two points, but at the ends.
+std::vector<EventShape> gaps_of(const EventSeries& series) {
+  std::vector<EventShape> gaps;
+  for (const Interval& gap : series.unseen_s) {
+    const double from = std::round((gap.low - series.start_s) / series.step_s),
+                 to = std::round((gap.high - series.start_s) / series.step_s);
+    if (from > 0 && to < static_cast<double>(series.value.size()) && to - from >= 2)
+      gaps.push_back({EventKind::step, from, to - from});
+  }
+  std::sort(gaps.begin(), gaps.end(), [](const EventShape& a, const EventShape& b) {
+    return a.bridged > b.bridged;
+  });
+  if (gaps.size() > 16) gaps.resize(16);
+  return gaps;
+}
+
+Event event_of(const Search& search, const Hypothesis& now, std::size_t i) {
+  const EventShape& shape = now.fit.shape[i];
+  const double step_s = search.series.step_s;
+  Event event;
+  event.kind = shape.kind;
+  event.size = now.fit.size(static_cast<Eigen::Index>(i));
+  event.sd = now.fit.sd(i);
+  event.score = std::min(std::abs(event.size) / event.sd, std::sqrt(now.gained[i]));
+  event.threshold = now.threshold[i];
+  event.not_told_from = now.not_told[i];
+  std::vector<EventShape> others = now.fit.shape;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+  const Regression beside =
+      regress(std::move(others), search.grid, search.coefficients, now.weight);
+  if (shape.kind == EventKind::step) {
+    const Interval place = step_interval(search, beside, now, shape);
+    const double start_s = search.series.start_s;
+    event.at_s = start_s + (shape.bridged > 0 ? place.high : shape.at) * step_s;
+    event.at_ci95 = {start_s + place.low * step_s, start_s + place.high * step_s};
+    event.in_gap = shape.bridged > 0;
+  }
+  if (shape.kind == EventKind::warm_up) {
+    event.from_s = search.series.start_s;
+    event.tau_s = shape.tau * step_s;
+    bound_tau(search, beside, now, event);
+  }
+  if (shape.kind == EventKind::ramp) {
+    const double samples =
+        static_cast<double>(search.grid.points) * static_cast<double>(search.grid.per_point);
+    event.slope =
+        event.size / ((samples - 1) * step_s / static_cast<double>(search.grid.per_point));
+  }
+  return event;
+}
+
+/// Where beside the events the scores of steps still pass their threshold: stretches between changes of sign count as one.
+int further_steps(const Search& search, const Hypothesis& now) {
+  const StepScan scan = scan_steps(now.fit, now.weight, search.grid.points, search.margin);
+  const double limit =
+      rough_threshold(scan.distance, search.options.false_alarm / 2, StepScan::kEvery);
+  int places = 0;
+  double last = 0;
+  for (const double score : scan.score) {
+    if (std::abs(score) < limit) continue;
+    places += score * last <= 0 ? 1 : 0;
+    last = score;
+  }
+  return places;
+}
+
+Interval longest_without_steps(const std::vector<Event>& events,
+                               double start_s,
+                               double duration_s) {
+  std::vector<double> at = {start_s, start_s + duration_s};
+  for (const Event& event : events)
+    if (event.kind == EventKind::step) at.push_back(event.at_s);
+  std::sort(at.begin(), at.end());
+  Interval longest{at[0], at[1]};
+  for (std::size_t i = 1; i < at.size(); ++i)
+    if (at[i] - at[i - 1] > longest.high - longest.low) longest = {at[i - 1], at[i]};
+  return longest;
+}
+
+/// What many steps are.
+void judge_many(const Search& search,
+                const Hypothesis& now,
+                std::string_view unit,
+                EventSearch& found) {
+  if (!found.more && found.events.size() < 6) return;
+  const double duration_s = static_cast<double>(search.grid.points) * search.series.step_s;
+  found.telegraph =
+      telegraph_of(found.events, found.more ? further_steps(search, now) : 0, duration_s);
+  if (found.telegraph) {
+    const Telegraph& telegraph = *found.telegraph;
+    found.sentences.push_back(fmt::format(
+        "The record jumps between two levels about {}{}{} apart, {} times at least: random "
+        "telegraph noise. What is said of "
+        "slow noise is about these jumps.",
+        number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
+        unit.empty() ? "" : " ",
+        unit,
+        telegraph.jumps));
+  } else if (found.more) {
+    const Interval quiet = longest_without_steps(found.events, search.series.start_s, duration_s);
+    found.sentences.push_back(fmt::format(
+        "There are more than {} steps and drifts: the record is no noise with a few of them, but "
+        "handled, moved, or shaken by what happens around it; they stay in. The longest stretch "
+        "without a step that was found is from {} to {} s.",
+        search.options.most,
+        place_text(quiet.low),
+        place_text(quiet.high)));
+  }
+}
+
+}  // namespace
+
+EventSearch find_events(const EventSeries& series,
+                        const NoisePowers& powers,
+                        const EventOptions& options,
+                        std::string_view unit) {
+  const std::uint64_t n = series.value.size();
+  Dct dct(n);
+  const std::span<const double> c = dct.transform(series.value);
+  Search search{series,
+                powers,
+                options,
+                {n, series.per_point},
+                std::max<std::uint64_t>(8, n / 500),
+                {},
+                gaps_of(series)};
+  search.coefficients.assign(c.begin() + 1, c.end());
+
+  Hypothesis now;
+  now.fit.rest = search.coefficients;
+  fit_both(search, {}, now);
+  EventSearch found;
+  for (int round = 0; round <= options.most; ++round) {
+    std::optional<Trial> next = next_event(search, now);
+    if (!next) break;
+    found.more = round == options.most;
+    if (found.more) break;
+    now = std::move(next->with);
+    place_again(search, now);
+    drop_weak(search, now);
+  }
+  for (std::size_t i = 0; i < now.fit.shape.size(); ++i) {
+    found.events.push_back(event_of(search, now, i));
+    found.sentences.push_back(event_sentence(found.events.back(), unit));
+    found.spent += now.fit.shape[i].kind == EventKind::ramp ? 1 : 2;
+  }
+  judge_many(search, now, unit, found);
+  found.power = std::move(now.power);
+  return found;
+}
+
+}  // namespace libchar

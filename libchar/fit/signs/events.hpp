@@ -1,0 +1,45 @@
+#pragma once
+// Is it noise at all? What a noise spectrum cannot hold: steps, a warm-up, a straight drift. Found in time, against the fitted noise,
+// and taken out as means with a sign before the noise is fitted again. Theory and figures: docs/theory/events.md.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/fit/record/noise_powers.hpp"
+#include "libchar/fit/signs/event.hpp"
+#include "libchar/fit/signs/event_series.hpp"
+
+namespace libchar {
+
+struct EventOptions {
+  double false_alarm = 0.003;  ///< of a record that is noise, over all kinds and places
+  int most = 8;  ///< events looked for; where there are more, something else is the matter
+  bool steps = true, warm_up = true, ramp = true;
+};
+
+/// Jumps between two levels, over and over: random telegraph noise, of which the steps found are a few.
+struct Telegraph {
+  double size = 0, sd = 0;  ///< between the levels
+  int jumps = 0;            ///< at least
+  double dwell_s = 0;       ///< mean time at a level, at most
+};
+
+struct EventSearch {
+  std::vector<Event> events;  ///< in the order in which they were found
+  std::vector<double>
+      power;  ///< the noise they were found against: E c_k^2 of the series without them
+  std::optional<Telegraph> telegraph;
+  int spent = 0;                       ///< degrees of freedom that the events took from the noise
+  bool more = false;                   ///< stopped at `most` with more to find
+  std::vector<std::string> sentences;  ///< one an event, in the unit given
+};
+
+/// Searches a series; at least 64 values, Error(numeric) below.
+EventSearch find_events(const EventSeries& series,
+                        const NoisePowers& powers,
+                        const EventOptions& options = {},
+                        std::string_view unit = {});
+
+}  // namespace libchar

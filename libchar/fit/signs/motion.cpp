@@ -1,0 +1,339 @@
+// The activity of a block is the mean |difference| of neighbouring values, that of means of four over four blocks, both but for the two
+// largest, and the median |difference| of means of sixteen over sixteen blocks. Differences see neither slow noise nor where the sensor
+// points, absolute values mind heavy tails little, and a step is one or two of them. In a sensor at rest the logarithms of the
+// activities agree but for sampling; the shortest interval that holds half of them (a quarter, an eighth) says where and how closely
+// (the shorth: P. Rousseeuw and A. Leroy, Statistica Neerlandica 42, 1988).
+//   in motion throughout   not even an eighth of the blocks agrees within kAgree, nor sixteen quiet ones in turn
+//   moving                 two and more blocks in turn above the agreeing ones by a factor of two and by six of their spreads
+//   a change of strength   a step, warm-up or ramp in the logarithms, by find_events against their own noise: noise whose strength
+//                          itself wanders has to change by more than that
+#include "libchar/fit/signs/motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/record/noise_powers.hpp"
+#include "libchar/fit/signs/events.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kFewestValues = 2048, kShortestBlock = 32, kMostBlocks = 512;
+constexpr double kAgree = 0.35;  ///< standard deviation of a logarithm: sampling gives .1 to .2
+constexpr double kFactor = 2;    ///< by which motion is louder than rest
+constexpr double kSpreads = 6;
+constexpr double kLasting =
+    0.1;  ///< share of a record from which on a louder stretch may be a change
+constexpr double kLoudest = 4;  ///< factor up to which it is
+constexpr double kRepeats =
+    0.3;  ///< share of repeated values: a staircase, whose steps come and go
+constexpr std::size_t kFewestBlocks = 64;
+
+/// Logarithms of the activities, a block each.
+struct Activity {
+  std::size_t block = 0;  ///< values
+  std::vector<double> fine;
+  std::vector<std::vector<double>> coarse;  ///< of means of four and of sixteen
+};
+
+/// |Differences| of neighbouring means of `width` values.
+std::vector<double> differences(std::span<const double> value, std::size_t width) {
+  std::vector<double> difference;
+  difference.reserve(value.size() / width);
+  double before = 0;
+  for (std::size_t i = 0; i + width <= value.size(); i += width) {
+    double mean = 0;
+    for (std::size_t j = i; j < i + width; ++j) mean += value[j] - value[0];
+    mean /= static_cast<double>(width);
+    if (i > 0) difference.push_back(std::abs(mean - before));
+    before = mean;
+  }
+  return difference;
+}
+
+/// Their mean but for the two largest, which a step takes.
+double mean_of_most(std::span<const double> difference) {
+  double largest = std::max(difference[0], difference[1]),
+         second = std::min(difference[0], difference[1]), sum = 0;
+  for (const double d : difference.subspan(2)) {
+    sum += std::min(d, second);  // which of the two is no longer among the largest
+    second = std::clamp(d, second, largest);
+    largest = std::max(d, largest);
+  }
+  return sum / static_cast<double>(difference.size() - 2);
+}
+
+/// `blocks` blocks around the one that begins at `from`.
+std::span<const double> around(std::span<const double> value,
+                               std::size_t from,
+                               std::size_t block,
+                               std::size_t blocks) {
+  const std::size_t before = std::min(from, block * blocks / 2);
+  const std::size_t to = std::min(value.size(), from - before + block * blocks);
+  return value.subspan(to - block * blocks, block * blocks);
+}
+
+double share_of_repeats(std::span<const double> value) {
+  std::size_t repeats = 0;
+  for (std::size_t i = 1; i < value.size(); ++i) repeats += value[i] == value[i - 1] ? 1 : 0;
+  return static_cast<double>(repeats) / static_cast<double>(value.size());
+}
+
+/// Logarithms; a block that stands quite still (bridged, or a stuck sensor) has some activity all the same.
+void take_logarithms(std::vector<double>& activity) {
+  const double floor = std::max(*std::max_element(activity.begin(), activity.end()) * 1e-6, 1e-300);
+  for (double& a : activity) a = std::log(std::max(a, floor));
+}
+
+Activity activity_of(std::span<const double> value) {
+  Activity activity;
+  activity.block = std::max(kShortestBlock, value.size() / kMostBlocks);
+  activity.coarse.resize(2);
+  const std::size_t block = activity.block;
+  for (std::size_t i = 0; i + block <= value.size(); i += block) {
+    activity.fine.push_back(mean_of_most(differences(value.subspan(i, block), 1)));
+    activity.coarse[0].push_back(mean_of_most(differences(around(value, i, block, 4), 4)));
+    std::vector<double> slow = differences(around(value, i, block, 16), 16);
+    activity.coarse[1].push_back(median_in_place(slow, Middle::upper));
+  }
+  take_logarithms(activity.fine);
+  for (std::vector<double>& coarse : activity.coarse) take_logarithms(coarse);
+  return activity;
+}
+
+struct Agreeing {
+  double centre = 0, spread = 0;
+};
+
+/// The shortest interval that holds a share of the values, as centre and standard deviation of a normal distribution.
+Agreeing shortest_half(const std::vector<double>& sorted, double share, double width_of_normal) {
+  const auto count = static_cast<std::size_t>(share * static_cast<double>(sorted.size()));
+  Agreeing best{0, std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i + count < sorted.size(); ++i) {
+    const double width = sorted[i + count] - sorted[i];
+    if (width / width_of_normal < best.spread)
+      best = {0.5 * (sorted[i + count] + sorted[i]), width / width_of_normal};
+  }
+  return best;
+}
+
+/// Where less than half of a record is still: the quietest sixteen blocks in turn that agree, if they are quieter than most by
+/// the factor of motion.
+std::optional<Agreeing> quiet_window(std::span<const double> values, double median) {
+  constexpr std::size_t kWindow = 16;
+  constexpr double kSteady = 0.2;
+  std::optional<Agreeing> quietest;
+  for (std::size_t i = 0; i + kWindow <= values.size(); ++i) {
+    double sum = 0, squares = 0;
+    for (const double a : values.subspan(i, kWindow)) {
+      sum += a - median;
+      squares += (a - median) * (a - median);
+    }
+    const double mean = sum / kWindow,
+                 spread = std::sqrt(std::max(0.0, squares / kWindow - mean * mean));
+    if (spread > kSteady || mean > -std::log(kFactor)) continue;
+    if (!quietest || median + mean < quietest->centre) quietest = {median + mean, spread};
+  }
+  return quietest;
+}
+
+std::optional<Agreeing> agreeing(const std::vector<double>& values) {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  // 2 z((1 + share) / 2)
+  for (const auto& [share, width] : {std::pair{0.5, 1.349}, {0.25, 0.6373}, {0.125, 0.3145}}) {
+    const Agreeing half = shortest_half(sorted, share, width);
+    if (half.spread <= kAgree) return half;
+  }
+  return quiet_window(values, sorted[sorted.size() / 2]);
+}
+
+/// Blocks above the agreeing ones.
+std::vector<char> louder(const std::vector<double>& values, const Agreeing& rest) {
+  const double limit = rest.centre + std::max(std::log(kFactor), kSpreads * rest.spread);
+  std::vector<char> above(values.size());
+  for (std::size_t b = 0; b < values.size(); ++b) above[b] = values[b] > limit ? 1 : 0;
+  return above;
+}
+
+struct Run {
+  std::size_t from = 0, to = 0;  ///< blocks from..to-1
+  std::size_t length() const { return to - from; }
+};
+
+std::vector<Run> runs_of(const std::vector<char>& in, char which) {
+  std::vector<Run> runs;
+  for (std::size_t b = 0; b < in.size(); ++b) {
+    if (in[b] != which) continue;
+    Run run{b, b};
+    while (run.to < in.size() && in[run.to] == which) ++run.to;
+    runs.push_back(run);
+    b = run.to;
+  }
+  return runs;
+}
+
+/// A stretch that is louder by a little and steadily so.
+bool lasting(std::span<const double> inside, std::size_t blocks, double centre) {
+  if (static_cast<double>(inside.size()) < kLasting * static_cast<double>(blocks)) return false;
+  std::vector<double> sorted(inside.begin(), inside.end());
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[sorted.size() / 2] < centre + std::log(kLoudest) &&
+         shortest_half(sorted, 0.8, 2.563).spread <= kAgree;
+}
+
+/// Moving blocks: a single quiet one between two is one, a single loud one is none, and what is louder throughout a long stretch
+/// is a change of strength.
+void tidy(const Activity& activity, double centre, std::vector<char>& moving) {
+  for (const Run& run : runs_of(moving, 0))
+    if (run.length() == 1 && run.from > 0 && run.to < moving.size()) moving[run.from] = 1;
+  for (const Run& run : runs_of(moving, 1)) {
+    const std::span<const double> inside = std::span(activity.fine).subspan(run.from, run.length());
+    if (run.length() < 2 || lasting(inside, moving.size(), centre))
+      std::fill_n(moving.begin() + static_cast<std::ptrdiff_t>(run.from), run.length(), 0);
+  }
+  // The blocks beside hold the beginning and the end.
+  for (const Run& run : runs_of(moving, 1)) {
+    if (run.from > 0) moving[run.from - 1] = 1;
+    if (run.to < moving.size()) moving[run.to] = 1;
+  }
+}
+
+/// Blocks that move, by any of the activities; none where no activity agrees with itself.
+std::optional<std::vector<char>> moving_blocks(const Activity& activity) {
+  const std::optional<Agreeing> fine = agreeing(activity.fine);
+  if (!fine) return std::nullopt;
+  std::vector<char> moving = louder(activity.fine, *fine);
+  for (const std::vector<double>& coarse : activity.coarse) {
+    const std::optional<Agreeing> rest = agreeing(coarse);
+    if (!rest) return std::nullopt;
+    const std::vector<char> slowly = louder(coarse, *rest);
+    for (std::size_t b = 0; b < moving.size(); ++b) moving[b] |= slowly[b];
+  }
+  tidy(activity, fine->centre, moving);
+  return moving;
+}
+
+/// Steps and drifts of the logarithms of what does not move.
+std::vector<StrengthChange> changes_of(const Activity& activity,
+                                       const std::vector<char>& moving,
+                                       double start_s,
+                                       double block_s) {
+  // Without scatter there is nothing to judge a change by: a counter, a signal from a formula.
+  std::vector<double> sorted = activity.fine;
+  std::sort(sorted.begin(), sorted.end());
+  if (shortest_half(sorted, 0.5, 1.349).spread < 1e-6) return {};
+  EventSeries logarithms{activity.fine, start_s, block_s, 1, {}};
+  for (const Run& run : runs_of(moving, 1)) {
+    const double before =
+        run.from > 0 ? activity.fine[run.from - 1] : activity.fine[run.to % moving.size()];
+    const double after = run.to < moving.size() ? activity.fine[run.to] : before;
+    for (std::size_t b = run.from; b < run.to; ++b)
+      logarithms.value[b] = before + (after - before) * static_cast<double>(b - run.from + 1) /
+                                         static_cast<double>(run.length() + 1);
+    logarithms.unseen_s.push_back({start_s + static_cast<double>(run.from) * block_s,
+                                   start_s + static_cast<double>(run.to) * block_s});
+  }
+  std::vector<StrengthChange> changes;
+  for (const Event& event : find_events(logarithms, fitted_powers()).events)
+    changes.push_back(
+        {event.kind,
+         event.at_s,
+         {event.at_ci95.low - block_s, event.at_ci95.high + block_s},
+         std::exp(event.size),
+         {std::exp(event.size - kNormal95 * event.sd), std::exp(event.size + kNormal95 * event.sd)},
+         event.score,
+         event.threshold});
+  return changes;
+}
+
+std::string change_sentence(const StrengthChange& change) {
+  const std::string factor = fmt::format("{} times as strong ({} to {})",
+                                         number_text(change.factor, 3),
+                                         number_text(change.factor_ci95.low, 3),
+                                         number_text(change.factor_ci95.high, 3));
+  if (change.kind == EventKind::step)
+    return fmt::format("The noise is {} from {} s on (between {} and {} s).",
+                       factor,
+                       place_text(change.at_s),
+                       place_text(change.at_ci95.low),
+                       place_text(change.at_ci95.high));
+  if (change.kind == EventKind::ramp)
+    return fmt::format("The noise changes little by little: at the end it is {}.", factor);
+  return fmt::format("The noise settles: at the beginning it is {}.", factor);
+}
+
+void describe(Motion& motion, double duration_s) {
+  if (motion.whole) {
+    motion.sentences.emplace_back(
+        "What is recorded changes throughout (motion, where the sensor is an inertial one): it is "
+        "a signal and no noise.");
+    return;
+  }
+  if (!motion.moving_s.empty()) {
+    double moving = 0;
+    for (const Interval& stretch : motion.moving_s) moving += stretch.high - stretch.low;
+    motion.sentences.push_back(
+        fmt::format("The sensor was moved or shaken in {} stretch{} ({} of {}), the first from "
+                    "{} to {} s; the longest "
+                    "still stretch is {} to {} s.",
+                    motion.moving_s.size(),
+                    motion.moving_s.size() == 1 ? "" : "es",
+                    duration_text(moving),
+                    duration_text(duration_s),
+                    place_text(motion.moving_s[0].low),
+                    place_text(motion.moving_s[0].high),
+                    place_text(motion.still_s ? motion.still_s->low : 0),
+                    place_text(motion.still_s ? motion.still_s->high : 0)));
+  }
+  for (const StrengthChange& change : motion.changes)
+    motion.sentences.push_back(change_sentence(change));
+}
+
+/// The longest run that is still, on the record's clock.
+std::optional<Interval> longest_of(const std::vector<Run>& still,
+                                   std::size_t blocks,
+                                   const EventSeries& series,
+                                   double block_s) {
+  const auto longest = std::max_element(still.begin(), still.end(), [](const Run& a, const Run& b) {
+    return a.length() < b.length();
+  });
+  if (longest == still.end()) return std::nullopt;
+  const double end = longest->to == blocks
+                         ? static_cast<double>(series.value.size()) * series.step_s
+                         : static_cast<double>(longest->to) * block_s;
+  return Interval{series.start_s + static_cast<double>(longest->from) * block_s,
+                  series.start_s + end};
+}
+
+}  // namespace
+
+Motion find_motion(const EventSeries& series) {
+  Motion motion;
+  const double duration_s = static_cast<double>(series.value.size()) * series.step_s;
+  if (series.value.size() < kFewestValues || share_of_repeats(series.value) > kRepeats)
+    return motion;
+  motion.tested = true;
+  const Activity activity = activity_of(series.value);
+  const double block_s = static_cast<double>(activity.block) * series.step_s;
+  const std::optional<std::vector<char>> moving = moving_blocks(activity);
+  motion.whole = !moving;
+  if (moving) {
+    for (const Run& run : runs_of(*moving, 1))
+      motion.moving_s.push_back({series.start_s + static_cast<double>(run.from) * block_s,
+                                 series.start_s + static_cast<double>(run.to) * block_s});
+    motion.still_s = longest_of(runs_of(*moving, 0), moving->size(), series, block_s);
+    if (std::count(moving->begin(), moving->end(), 0) >= static_cast<std::ptrdiff_t>(kFewestBlocks))
+      motion.changes = changes_of(activity, *moving, series.start_s, block_s);
+  }
+  describe(motion, duration_s);
+  return motion;
+}
+
+}  // namespace libchar

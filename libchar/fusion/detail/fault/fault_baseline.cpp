@@ -1,0 +1,283 @@
+#include "libchar/fusion/detail/fault/fault_baseline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/numeric/median.hpp"
+
+#if defined(LIBCHAR_X86_64)
+#include <emmintrin.h>
+#endif
+
+namespace libchar::fusion {
+namespace {
+
+/// Beyond it a residual is not learnt from, and its square proves nothing more.
+constexpr double kClip = 6, kMostDeviations = 1e6;
+constexpr double kMostRecent = 1e6;
+/// Long-run variance ratio that nothing is known of, and blocks that it is worth.
+constexpr double kUntoldRatio = 16, kUntoldBlocks = 8;
+/// An excess below this is scatter.
+constexpr double kLeastExcess = 1.35;
+/// Deviation of a gain and of a delay in samples before anything is known of them.
+constexpr double kPriorGain = 0.05, kPriorDelay = 1;
+/// Blocks that the long-run variances remember.
+constexpr double kBlockMemory = 64;
+
+// Four sensors at once: what stands of a kind in the group at q.
+#define LIBCHAR_GROUP(kind) LIBCHAR_FOUR(q + 4 * FaultBaseline::kind)
+#define LIBCHAR_GROUP_TO(kind) LIBCHAR_FOUR_TO(q + 4 * FaultBaseline::kind)
+
+/// f, here and y to x, dx, y less its slow mean, and the means of f.
+LIBCHAR_WIDE_LANES void predict_all(double* q, double* y, std::size_t padded) {
+  const double a = 1 / FaultBaseline::kMeanMemory;
+  for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
+    const Four here = LIBCHAR_GROUP(kHere), f = LIBCHAR_GROUP(kF);
+    const Four mean_f = LIBCHAR_GROUP(kMeanF), square_x = LIBCHAR_GROUP(kSquareX);
+    const Four square_dx = LIBCHAR_GROUP(kSquareDx);
+    const Four centred = here * (f - mean_f);
+    const Four step = here * LIBCHAR_GROUP(kHadF) * (f - LIBCHAR_GROUP(kLastF));
+    LIBCHAR_GROUP_TO(kX) = centred;
+    LIBCHAR_GROUP_TO(kDx) = step;
+    LIBCHAR_FOUR_TO(y + i) =
+        LIBCHAR_FOUR(y + i) -
+        (LIBCHAR_GROUP(kBias) + LIBCHAR_GROUP(kGain) * centred + LIBCHAR_GROUP(kDelay) * step);
+    LIBCHAR_GROUP_TO(kMeanF) = mean_f + a * centred;
+    LIBCHAR_GROUP_TO(kSquareX) = square_x + here * a * (centred * centred - square_x);
+    LIBCHAR_GROUP_TO(kSquareDx) = square_dx + here * a * (step * step - square_dx);
+    LIBCHAR_GROUP_TO(kLastF) = f;
+    LIBCHAR_GROUP_TO(kHadF) = here;
+  }
+}
+
+/// The square roots of four numbers that are not negative. (The compiler keeps a way to errno open
+/// and takes them one by one.)
+inline void take_roots(double* four) {
+#if defined(LIBCHAR_X86_64)
+  _mm_storeu_pd(four, _mm_sqrt_pd(_mm_loadu_pd(four)));
+  _mm_storeu_pd(four + 2, _mm_sqrt_pd(_mm_loadu_pd(four + 2)));
+#else
+  for (int i = 0; i < 4; ++i) four[i] = std::sqrt(four[i]);
+#endif
+}
+
+/// Where the bank reads.
+struct Evidence {
+  double *z, *present, *uz, *uu, *zz;
+};
+
+/// e and s to z, the sums of the block, and the evidence of the bank.
+LIBCHAR_WIDE_LANES void standardise_all(double* q,
+                                        const Evidence& out,
+                                        std::size_t padded,
+                                        double inverse_excess) {
+  const double a = 1 / FaultBaseline::kRecent, root = std::sqrt(inverse_excess);
+  const Four least = {-kMostDeviations, -kMostDeviations, -kMostDeviations, -kMostDeviations};
+  const Four most = -least;
+  const Four most_recent = {kMostRecent, kMostRecent, kMostRecent, kMostRecent};
+  for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
+    const Four x = LIBCHAR_GROUP(kX), dx = LIBCHAR_GROUP(kDx), here = LIBCHAR_GROUP(kHere);
+    const Four variance = LIBCHAR_GROUP(kS) * LIBCHAR_GROUP(kStartMargin) +
+                          LIBCHAR_GROUP(kBiasVar) + LIBCHAR_GROUP(kGainVar) * (x * x) +
+                          LIBCHAR_GROUP(kDelayVar) * (dx * dx);
+    double* const one_over = q + 4 * FaultBaseline::kRoot;
+    LIBCHAR_FOUR_TO(one_over) = 1 / variance;
+    take_roots(one_over);
+    const Four standard = here * LIBCHAR_GROUP(kE) * LIBCHAR_FOUR(one_over);
+    const Four low = standard < least ? least : standard;
+    const Four z = low > most ? most : low;
+    LIBCHAR_GROUP_TO(kZ) = z;
+    const Four now = here * LIBCHAR_GROUP(kArmed), u = x * LIBCHAR_GROUP(kUnitX) * now;
+    LIBCHAR_FOUR_TO(out.z + i) = now * z * LIBCHAR_GROUP(kScaleBias) * root;
+    LIBCHAR_FOUR_TO(out.present + i) = now;
+    LIBCHAR_FOUR_TO(out.uz + i) = u * z * LIBCHAR_GROUP(kScaleGain) * root;
+    LIBCHAR_FOUR_TO(out.uu + i) = u * u;
+    LIBCHAR_FOUR_TO(out.zz + i) =
+        now * ((z * z * inverse_excess - 1) * LIBCHAR_GROUP(kScaleNoise) + 1);
+    LIBCHAR_GROUP_TO(kSumZ) = LIBCHAR_GROUP(kSumZ) + z;
+    LIBCHAR_GROUP_TO(kSumXz) = LIBCHAR_GROUP(kSumXz) + x * z;
+    LIBCHAR_GROUP_TO(kSumXx) = LIBCHAR_GROUP(kSumXx) + x * x;
+    LIBCHAR_GROUP_TO(kSumZz) = LIBCHAR_GROUP(kSumZz) + z * z;
+    LIBCHAR_GROUP_TO(kSumN) = LIBCHAR_GROUP(kSumN) + here;
+    LIBCHAR_GROUP_TO(kCount) = LIBCHAR_GROUP(kCount) + here;
+    const Four square = z * z < most_recent ? z * z : most_recent,
+               recent = LIBCHAR_GROUP(kRecentSquare);
+    LIBCHAR_GROUP_TO(kRecentSquare) = recent + here * a * (square - recent);
+  }
+}
+
+/// B <- max(B (1 - k), floor), b <- b + k e: with t = z / sqrt(S), k e = B t.
+LIBCHAR_WIDE_LANES void learn_all(double* q,
+                                  const double* tops,
+                                  double frozen,
+                                  std::size_t padded) {
+  const Four least = {-kClip, -kClip, -kClip, -kClip}, most = -least, none = {0, 0, 0, 0};
+  for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
+    const Four z = LIBCHAR_GROUP(kZ), root = LIBCHAR_GROUP(kRoot), x = LIBCHAR_GROUP(kX);
+    const Four bias_var = LIBCHAR_GROUP(kBiasVar), gain_var = LIBCHAR_GROUP(kGainVar);
+    const Four delay_var = LIBCHAR_GROUP(kDelayVar);
+    const Four learns = LIBCHAR_FOUR(tops + i) <= frozen ? LIBCHAR_GROUP(kHere) : none;
+    const Four low = z < least ? least : z;
+    const Four t = (low > most ? most : low) * root;
+    const Four over = root * root;
+    const Four kb = learns * bias_var;
+    const Four kg = learns * x * gain_var;
+    const Four kd = learns * LIBCHAR_GROUP(kDx) * delay_var;
+    LIBCHAR_GROUP_TO(kBias) = LIBCHAR_GROUP(kBias) + kb * t;
+    LIBCHAR_GROUP_TO(kGain) = LIBCHAR_GROUP(kGain) + kg * t;
+    LIBCHAR_GROUP_TO(kDelay) = LIBCHAR_GROUP(kDelay) + kd * t;
+    const Four b = bias_var - kb * kb * over, b_floor = LIBCHAR_GROUP(kBiasFloor);
+    const Four g = gain_var - kg * kg * over, g_floor = LIBCHAR_GROUP(kGainFloor);
+    const Four d = delay_var - kd * kd * over, d_floor = LIBCHAR_GROUP(kDelayFloor);
+    LIBCHAR_GROUP_TO(kBiasVar) = b > b_floor ? b : b_floor;
+    LIBCHAR_GROUP_TO(kGainVar) = g > g_floor ? g : g_floor;
+    LIBCHAR_GROUP_TO(kDelayVar) = d > d_floor ? d : d_floor;
+  }
+}
+
+#undef LIBCHAR_GROUP
+#undef LIBCHAR_GROUP_TO
+
+double believed(double ratio, double blocks, bool trusted) {
+  // What the scatter of so few blocks alone would show is not believed.
+  const double scatter = 1 + 3.5 * std::sqrt(2 / std::max(blocks, 1.0));
+  if (trusted || blocks >= 16) return ratio <= scatter ? 1 : ratio;
+  return std::max(ratio, 1.0);
+}
+
+}  // namespace
+
+FaultBaseline::FaultBaseline(std::size_t sensors)
+    : n(sensors),
+      padded(CusumBank::padded(sensors)),
+      block(padded / 4 * kStride, 0.0),
+      here(column(kHere)),
+      armed(column(kArmed)),
+      f(column(kF)),
+      mean_f(column(kMeanF)),
+      last_f(column(kLastF)),
+      had_f(column(kHadF)),
+      x(column(kX)),
+      square_x(column(kSquareX)),
+      square_dx(column(kSquareDx)),
+      bias(column(kBias)),
+      gain(column(kGain)),
+      delay(column(kDelay)),
+      bias_var(column(kBiasVar)),
+      gain_var(column(kGainVar)),
+      delay_var(column(kDelayVar)),
+      bias_floor(column(kBiasFloor)),
+      gain_floor(column(kGainFloor)),
+      delay_floor(column(kDelayFloor)),
+      e(column(kE)),
+      s(column(kS)),
+      z(column(kZ)),
+      count(column(kCount)),
+      unit_x(column(kUnitX)),
+      start_margin(column(kStartMargin)),
+      scale_bias(column(kScaleBias)),
+      scale_gain(column(kScaleGain)),
+      scale_noise(column(kScaleNoise)),
+      sum_z(column(kSumZ)),
+      sum_xz(column(kSumXz)),
+      sum_xx(column(kSumXx)),
+      sum_zz(column(kSumZz)),
+      sum_n(column(kSumN)),
+      recent(column(kRecentSquare)),
+      y(padded, 0.0),
+      long_bias(padded, 1.0),
+      long_gain(padded, 1.0),
+      long_noise(padded, 1.0),
+      blocks(padded, 0.0) {
+  for (SensorColumn* one :
+       {&bias_var, &s, &start_margin, &recent, &scale_bias, &scale_gain, &scale_noise})
+    one->fill(1);
+  gain_var.fill(kPriorGain * kPriorGain);
+  delay_var.fill(kPriorDelay * kPriorDelay);
+}
+
+SensorColumn FaultBaseline::column(Kind kind) {
+  return {block.data() + 4 * kind, kStride, padded};
+}
+
+void FaultBaseline::predict() {
+  predict_all(block.data(), y.data(), padded);
+}
+
+void FaultBaseline::standardise(CusumSample& sample) {
+  standardise_all(block.data(),
+                  {sample.z.data(),
+                   sample.present.data(),
+                   sample.uz.data(),
+                   sample.uu.data(),
+                   sample.zz.data()},
+                  padded,
+                  1 / excess);
+}
+
+void FaultBaseline::learn(const std::vector<double>& tops, double frozen) {
+  learn_all(block.data(), tops.data(), frozen, padded);
+}
+
+void FaultBaseline::find_excess(const int* index, int m, std::vector<double>& scratch) {
+  scratch.clear();
+  for (int k = 0; k < m; ++k) scratch.push_back(recent[static_cast<std::size_t>(index[k])]);
+  // The lower of the two in the middle: half of the sensors may be wrong.
+  const double median = median_in_place(scratch, Middle::lower);
+  excess = median > kLeastExcess ? median : 1;
+}
+
+void FaultBaseline::renew(double count_memory) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double memory = std::clamp(count[i], 100.0, kMemory);
+    const auto least = [&](double square, double prior) {
+      return 1 / (memory * square / s[i] + 1 / (prior * prior));
+    };
+    bias_floor[i] = s[i] / memory;
+    gain_floor[i] = least(square_x[i], kPriorGain);
+    delay_floor[i] = least(square_dx[i], kPriorDelay);
+    // Where the input stands still there is nothing that a gain could show.
+    unit_x[i] = 1 / std::sqrt(std::max(square_x[i], 16 * s[i]));
+    start_margin[i] = 1 + 2 * std::sqrt(2 / std::clamp(count[i], 8.0, count_memory));
+  }
+}
+
+void FaultBaseline::end_block(bool trusted, const std::vector<double>& tops, double frozen) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double m = sum_n[i];
+    if (m < kLeastOfBlock || tops[i] > frozen) continue;
+    const double off = sum_zz[i] - m;
+    blocks[i] += 1;
+    const double a = std::max(1 / kBlockMemory, 1 / (blocks[i] + 1));
+    const auto follow = [&](double& ratio, double now) {
+      ratio += a * (std::min(now, 1e4) - ratio);
+    };
+    follow(long_bias[i], sum_z[i] * sum_z[i] / m);
+    follow(long_gain[i], sum_xx[i] > 0 ? sum_xz[i] * sum_xz[i] / sum_xx[i] : 1);
+    follow(long_noise[i], off * off / (2 * m));
+    const double b = std::min(blocks[i], kBlockMemory);
+    const double bias_ratio = believed(long_bias[i], b, trusted);
+    scale_bias[i] = 1 / std::sqrt(bias_ratio);
+    scale_gain[i] = 1 / std::sqrt(believed(long_gain[i], b, trusted));
+    // A mean that wanders is no noise either.
+    scale_noise[i] = 1 / std::max(std::sqrt(believed(long_noise[i], b, trusted)), bias_ratio);
+  }
+  clear_block();
+}
+
+void FaultBaseline::clear_block() {
+  for (SensorColumn* v : {&sum_z, &sum_xz, &sum_xx, &sum_zz, &sum_n}) v->fill(0);
+}
+
+void FaultBaseline::forget_blocks(bool trusted) {
+  const double ratio = trusted ? 1 : kUntoldRatio;
+  for (std::vector<double>* v : {&long_bias, &long_gain, &long_noise})
+    std::fill(v->begin(), v->end(), ratio);
+  for (SensorColumn* v : {&scale_bias, &scale_gain}) v->fill(1 / std::sqrt(ratio));
+  scale_noise.fill(1 / ratio);
+  std::fill(blocks.begin(), blocks.end(), trusted ? 0.0 : kUntoldBlocks);
+  clear_block();
+}
+
+}  // namespace libchar::fusion

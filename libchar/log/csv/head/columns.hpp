@@ -1,0 +1,57 @@
+#pragma once
+// What the columns of a table hold, from its first rows.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libchar/log/csv/line.hpp"
+#include "libchar/log/csv/rows/number.hpp"
+
+namespace libchar::csv {
+
+using Cells = std::vector<Field>;
+
+/// How numbers are written.
+struct NumberStyle {
+  char decimal = '.';
+  char thousands = 0;  ///< between groups of three digits; 0 = none
+};
+
+/// "1,234.5" → "1234.5" where that is what the style says; else as it is.
+std::string without_thousands(std::string_view text, NumberStyle style);
+
+/// read_cell, with thousands and a label in front ("ax=0.01", "ax: 0.01").
+Cell read_styled(std::string_view text, NumberStyle style);
+
+/// "21.3 °C", "5V": a number in front of a unit that is known, as it stands in the file.
+struct MeasuredCell {
+  std::string_view number, unit;
+};
+std::optional<MeasuredCell> number_and_unit(std::string_view text);
+
+/// Two spellings of one unit, in UTF-8 or Windows-1252.
+bool same_unit(std::string_view a, std::string_view b);
+
+/// read_styled for cells that are studied, where a unit behind the number does no harm; rows must have the unit of their column.
+Cell read_sampled(std::string_view text, NumberStyle style);
+
+/// Length of a label and its sign in front of a number, "ax=" or "ax:"; 0 when there is none.
+std::size_t label_length(std::string_view text);
+
+enum class ColumnKind {
+  empty,     ///< no cell with anything in it
+  number,    ///< numbers, and what cannot be read among them
+  calendar,  ///< dates with clock times
+  date,
+  clock,
+  text,  ///< words in every cell, two or more
+};
+
+/// Of the rows that have `columns` cells.
+std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,
+                                     std::size_t columns,
+                                     NumberStyle style);
+
+}  // namespace libchar::csv

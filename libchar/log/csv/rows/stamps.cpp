@@ -1,0 +1,248 @@
+#include "libchar/log/csv/rows/stamps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "libchar/core/text/text.hpp"
+#include "libchar/log/time/time_column.hpp"
+
+namespace libchar::csv {
+namespace {
+
+// Two columns that are one stamp.
+struct StampPair {
+  std::size_t first = 0, second = 0;
+  bool calendar = false;  // a date and its clock time; else seconds and nanoseconds
+};
+
+bool is_calendar(ColumnKind kind) {
+  return kind == ColumnKind::calendar || kind == ColumnKind::date || kind == ColumnKind::clock;
+}
+
+// "header.stamp.secs" and "header.stamp.nsecs".
+bool seconds_and_nanoseconds(std::string_view a, std::string_view b) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {
+      {{"nanosecs", "secs"},
+       {"nanosec", "sec"},
+       {"nsecs", "secs"},
+       {"nsec", "sec"},
+       {"nanoseconds", "seconds"}}};
+  const std::string first = ascii_lower(a), second = ascii_lower(b);
+  for (const auto& [nano, whole] : kWords)
+    if (first.ends_with(whole) && second.ends_with(nano) &&
+        first.substr(0, first.size() - whole.size()) ==
+            second.substr(0, second.size() - nano.size()))
+      return true;
+  return false;
+}
+
+std::optional<std::int64_t> whole_number(const Cells& row, std::size_t column) {
+  if (column >= row.size()) return std::nullopt;
+  std::int64_t out = 0;
+  std::size_t offset = 0;
+  return read_stamp(row[column].text, '.', 1, out, offset) == StampDefect::none &&
+                 row[column].text.find_first_of(".eE") == std::string::npos
+             ? std::optional(out)
+             : std::nullopt;
+}
+
+// Without names: seconds since 1970, then what is left of them in nanoseconds (ros2 topic echo --csv).
+bool epoch_and_rest(const std::vector<Cells>& rows) {
+  std::int64_t last = 0, largest = 0;
+  for (const Cells& row : rows) {
+    const auto s = whole_number(row, 0), ns = whole_number(row, 1);
+    if (!s || !ns || *s < 1000000000 || *s > 2200000000 || *ns < 0 || *ns >= 1000000000)
+      return false;
+    const std::int64_t stamp = *s * 1000000000 + *ns;
+    if (stamp <= last) return false;
+    last = stamp;
+    largest = std::max(largest, *ns);
+  }
+  return rows.size() > 2 && largest >= 1000000;
+}
+
+std::optional<StampPair> find_pair(const StampStudy& study, const Dialect& dialect) {
+  const auto place = [&](ColumnKind kind) {
+    return std::find(study.kinds.begin(), study.kinds.end(), kind) - study.kinds.begin();
+  };
+  const auto date = static_cast<std::size_t>(place(ColumnKind::date)),
+             clock = static_cast<std::size_t>(place(ColumnKind::clock));
+  if (date < study.kinds.size() && clock < study.kinds.size()) return StampPair{date, clock, true};
+  if (dialect.has_header) {
+    for (std::size_t c = 0; c + 1 < dialect.columns.size(); ++c)
+      if (seconds_and_nanoseconds(dialect.columns[c].text, dialect.columns[c + 1].text))
+        return StampPair{c, c + 1, false};
+  } else if (dialect.columns.size() > 2 && epoch_and_rest(study.rows)) {
+    return StampPair{0, 1, false};
+  }
+  return std::nullopt;
+}
+
+FirstValues first_numbers(const StampStudy& study, std::size_t column) {
+  FirstValues first;
+  for (const Cells& row : study.rows) {
+    if (column >= row.size()) continue;
+    const std::string& text = row[column].text;
+    const Cell cell = read_sampled(text, study.style);
+    if (cell.kind == Cell::value) first.values.push_back(cell.number);
+    first.integers = first.integers && text.find_first_of(".,eE") == std::string::npos;
+  }
+  return first;
+}
+
+// Seconds after the first, so that a double holds them.
+FirstValues first_stamps(const StampStudy& study,
+                         const Dialect& dialect,
+                         const StampPart& part,
+                         const StampPart& more) {
+  FirstValues first;
+  std::optional<std::int64_t> begin;
+  for (const Cells& row : study.rows) {
+    std::int64_t sum = 0;
+    bool good = true;
+    for (const StampPart* one : {&part, &more}) {
+      if (one->column < 0) continue;
+      std::int64_t ns = 0;
+      std::size_t offset = 0;
+      const auto column = static_cast<std::size_t>(one->column);
+      good = good && column < row.size() &&
+             read_part(row[column].text, *one, dialect, ns, offset) == StampDefect::none;
+      good = good && !__builtin_add_overflow(sum, ns, &sum);
+    }
+    if (!good) continue;
+    if (!begin) begin = sum;
+    first.values.push_back(static_cast<double>(sum - *begin) * 1e-9);
+  }
+  return first;
+}
+
+void choose_date_order(const StampStudy& study,
+                       const ReadOptions& options,
+                       Dialect& dialect,
+                       LogInfo& info) {
+  std::vector<std::string_view> texts;
+  std::string example;
+  for (const Cells& row : study.rows)
+    for (std::size_t c = 0; c < std::min(row.size(), study.kinds.size()); ++c)
+      if (study.kinds[c] == ColumnKind::calendar || study.kinds[c] == ColumnKind::date) {
+        texts.push_back(row[c].text);
+        if (example.empty()) example = row[c].text;
+      }
+  if (texts.empty()) return;
+  DateStyle style = date_style(texts, study.style.decimal == ',');
+  if (options.date_order != "auto")
+    style = {options.date_order == "day" ? DateOrder::day_first : DateOrder::month_first, false};
+  dialect.date_order = style.order;
+  if (style.ambiguous)
+    info.guesses.push_back(
+        fmt::format("dates: {} is read with the {} first (`date_order` day or month decides)",
+                    printable(example, 40),
+                    style.order == DateOrder::day_first ? "day" : "month"));
+}
+
+void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
+  const auto main = static_cast<std::size_t>(dialect.time.column);
+  bool zone = false;
+  for (const Cells& row : study.rows)
+    for (const StampPart* part : {&dialect.time, &dialect.more_time})
+      if (part->column >= 0 && static_cast<std::size_t>(part->column) < row.size())
+        if (const auto stamp =
+                read_calendar(row[static_cast<std::size_t>(part->column)].text, dialect.date_order))
+          zone = zone || stamp->zone;
+  dialect.clock_only = study.kinds[main] == ColumnKind::clock && dialect.more_time.column < 0;
+  info.dialect.push_back(dialect.clock_only ? "stamps are times of day"
+                         : zone             ? "calendar stamps, with their time zone"
+                                            : "calendar stamps, as written, without a time zone");
+  info.time.unit = "ns";
+  info.time.unit_ns = 1;
+}
+
+TableFront front_of(const StampStudy& study,
+                    const Dialect& dialect,
+                    const std::optional<StampPair>& pair) {
+  TableFront table;
+  for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
+    const Column& column = dialect.columns[c];
+    ColumnLabel label{column.text, column.unit_below};
+    const bool first = pair && c == pair->first, second = pair && c == pair->second;
+    label.calendar = (c < study.kinds.size() && is_calendar(study.kinds[c])) || first;
+    label.text = second || (c < study.kinds.size() && (study.kinds[c] == ColumnKind::text ||
+                                                       study.kinds[c] == ColumnKind::empty));
+    if (column.left_out) label.text = true;
+    table.columns.push_back(label);
+  }
+  table.named = dialect.has_header;
+  table.text = true;
+  table.stated_rate_hz = study.stated_rate_hz;
+  return table;
+}
+
+}  // namespace
+
+StampDefect read_part(std::string_view text,
+                      const StampPart& part,
+                      const Dialect& dialect,
+                      std::int64_t& out,
+                      std::size_t& offset) {
+  if (!part.calendar) {
+    const std::size_t label = dialect.has_header ? 0 : label_length(text);
+    return read_stamp(text.substr(label), dialect.decimal, part.unit_ns, out, offset);
+  }
+  offset = 0;
+  const auto stamp = read_calendar(text, dialect.date_order);
+  if (!stamp)
+    return read_cell(text, dialect.decimal).kind == Cell::missing ? StampDefect::missing
+                                                                  : StampDefect::malformed;
+  out = stamp->ns;
+  return StampDefect::none;
+}
+
+void choose_stamps(const StampStudy& study,
+                   const ReadOptions& options,
+                   Dialect& dialect,
+                   LogInfo& info) {
+  choose_date_order(study, options, dialect, info);
+  const auto pair = find_pair(study, dialect);
+  TableFront table = front_of(study, dialect, pair);
+  const auto part_of = [&](std::size_t column) {
+    const bool calendar = column < study.kinds.size() && is_calendar(study.kinds[column]);
+    const bool seconds = pair && !pair->calendar && column == pair->first;
+    return StampPart{static_cast<int>(column), calendar, seconds ? 1000000000 : 1};
+  };
+  const auto partner_of = [&](std::size_t column) {
+    return pair && column == pair->first ? part_of(pair->second) : StampPart{};
+  };
+  table.first_values = [&](std::size_t column) {
+    return table.columns[column].calendar
+               ? first_stamps(study, dialect, part_of(column), partner_of(column))
+               : first_numbers(study, column);
+  };
+  auto index = find_time_column(table, options, info);
+  if (!index) return;
+  if (pair && *index == pair->second) index = pair->first;
+  dialect.time = part_of(*index);
+  dialect.more_time = partner_of(*index);
+  const std::string& name = dialect.columns[*index].name;
+  info.time.column = name.empty() ? fmt::format("c{}", *index) : name;
+  if (dialect.time.calendar) {
+    say_calendar(study, dialect, info);
+  } else if (pair && *index == pair->first) {
+    info.time.unit = "s";
+    info.time.unit_ns = 1;
+    const std::string& rest = dialect.columns[pair->second].name;
+    const std::string sentence =
+        fmt::format("stamps: seconds in {} and nanoseconds in {}",
+                    printable(info.time.column),
+                    rest.empty() ? fmt::format("c{}", pair->second) : printable(rest));
+    if (dialect.has_header)
+      info.dialect.push_back(sentence);
+    else
+      info.guesses.push_back(sentence + " (`time_column` none keeps them as channels)");
+  } else {
+    dialect.time.unit_ns = find_time_unit(table, *index, options, info);
+  }
+}
+
+}  // namespace libchar::csv

@@ -1,0 +1,116 @@
+#include "libchar/replay/detail/align/aligned_pass.hpp"
+
+#include <algorithm>
+
+#include "libchar/fusion/alignment_learning.hpp"
+#include "libchar/replay/detail/align/instants.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr Eigen::Index kAlignedBlock = 2048;
+
+// Keeps as many instants as the interpolation needs on either side of the next one.
+class HeldBack {
+ public:
+  HeldBack(const SceneAlignment& alignment,
+           std::int64_t from,
+           std::int64_t to,
+           const AlignedInstant& one)
+      : alignment_(alignment), aligner_(alignment.alignment), next_(from), to_(to), one_(one) {}
+
+  void take(std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+    if (samples_.size() == 0) base_ = first;
+    Eigen::MatrixXd fresh = samples;
+    fresh.topRows(alignment_.h.size()).array().colwise() /= alignment_.h.array();
+    aligner_.clip(fresh);
+    const Eigen::Index kept = samples_.cols();
+    samples_.conservativeResize(fresh.rows(), kept + fresh.cols());
+    samples_.rightCols(fresh.cols()) = fresh;
+    truth_.conservativeResize(truth.rows(), kept + truth.cols());
+    truth_.rightCols(truth.cols()) = truth;
+    give(base_ + samples_.cols() - fusion::kAlignmentMargin);
+    const auto drop = std::max<Eigen::Index>(0, next_ - fusion::kAlignmentMargin - base_);
+    if (drop == 0) return;
+    samples_ = samples_.rightCols(samples_.cols() - drop).eval();
+    truth_ = truth_.rightCols(truth_.cols() - drop).eval();
+    base_ += drop;
+  }
+  void finish() { give(base_ + samples_.cols()); }
+
+ private:
+  void give(std::int64_t until) {
+    for (; next_ < std::min(until, to_); ++next_) {
+      const Eigen::Index at = next_ - base_;
+      aligner_.column(samples_, at, aligned_);
+      one_(next_, samples_.col(at), aligned_, truth_.col(at));
+    }
+  }
+
+  const SceneAlignment& alignment_;
+  fusion::Aligner aligner_;
+  std::int64_t base_ = 0, next_, to_;
+  const AlignedInstant& one_;
+  Eigen::MatrixXd samples_, truth_;
+  Eigen::VectorXd aligned_;
+};
+
+}  // namespace
+
+void each_aligned(const Instants& instants,
+                  const SceneAlignment& alignment,
+                  std::int64_t from,
+                  std::int64_t to,
+                  const AlignedInstant& one,
+                  Progress& progress) {
+  HeldBack held(alignment, from, to, one);
+  instants.pass_recorded(
+      std::max<std::int64_t>(0, from - fusion::kAlignmentMargin),
+      std::min(instants.info().count, to + fusion::kAlignmentMargin),
+      kAlignedBlock,
+      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+        held.take(first, samples, truth);
+      },
+      progress);
+  held.finish();
+}
+
+void pass_aligned(const Instants& instants,
+                  const SceneAlignment& alignment,
+                  std::int64_t from,
+                  std::int64_t to,
+                  std::size_t size,
+                  const InstantsBlock& block,
+                  Progress& progress) {
+  const auto width = static_cast<Eigen::Index>(std::max<std::size_t>(size, 1));
+  Eigen::MatrixXd samples(alignment.h.size(), width), truths;
+  Eigen::Index filled = 0;
+  std::int64_t first = from;
+  const auto flush = [&] {
+    if (filled == 0) return;
+    if (filled == width)
+      block(first, samples, truths);
+    else
+      block(first, samples.leftCols(filled), truths.leftCols(filled));
+    first += filled;
+    filled = 0;
+  };
+  each_aligned(
+      instants,
+      alignment,
+      from,
+      to,
+      [&](std::int64_t,
+          const Eigen::VectorXd&,
+          const Eigen::VectorXd& aligned,
+          const Eigen::VectorXd& truth) {
+        if (truths.cols() == 0) truths.resize(truth.size(), width);
+        samples.col(filled) = aligned.cwiseProduct(alignment.h);
+        truths.col(filled) = truth;
+        if (++filled == width) flush();
+      },
+      progress);
+  flush();
+}
+
+}  // namespace libchar

@@ -1,0 +1,205 @@
+#include "libchar/replay/detail/align/alignment_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/not_known.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fusion/alignment_learning.hpp"
+#include "libchar/fusion/budget_meter.hpp"
+#include "libchar/replay/detail/align/instants.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kLearningBlockOfAlignment = 2048;
+/// Samples held in memory while an alignment is learnt.
+constexpr std::int64_t kMostValues = std::int64_t{1} << 20;
+constexpr std::int64_t kStretches = 64;
+
+struct LearningWindow {
+  std::int64_t from = 0, to = 0;
+};
+
+LearningWindow window_of_alignment(const Scene& scene,
+                                   const ReplayPlan& plan,
+                                   const Instants& instants) {
+  const SceneAlign& align = *scene.align;
+  if (align.learn == "run")
+    return {std::clamp(instants.settled(), plan.run_from, plan.run_to), plan.run_to};
+  if (align.learn == "learning") return {plan.learn_from, plan.learn_to};
+  const TimeWindow& w = align.window ? *align.window : *scene.rest;
+  const LearningWindow out{std::max(instants.instant_at(w.from_s), instants.settled()),
+                           instants.instant_at(w.to_s)};
+  if (out.to - out.from < 2)
+    throw Error({ErrorKind::input,
+                 "E0903",
+                 scene.file,
+                 "align: the window holds fewer than two instants of the recording",
+                 fmt::format("from {} s", brief_text(w.from_s, 6)),
+                 ""});
+  return out;
+}
+
+Eigen::VectorXd weights_of(const Scene& scene, const Instants& instants) {
+  if (instants.info().input_names.size() != 1)
+    throw Error({ErrorKind::input,
+                 "E0911",
+                 scene.file,
+                 "align: sensors are aligned to one true input",
+                 fmt::format("{} inputs", instants.info().input_names.size()),
+                 "one scene an axis; cross: [CHANNEL, …] names the other axes of each device"});
+  const Eigen::MatrixXd h = observations(scene, 1);
+  if (h.size() == 0) return Eigen::VectorXd::Ones(static_cast<Eigen::Index>(scene.sensors.size()));
+  return h.col(0);
+}
+
+fusion::AlignmentOptions options_of(const Scene& scene) {
+  const SceneAlign& align = *scene.align;
+  const auto has = [&](std::string_view term) {
+    return std::find(align.terms.begin(), align.terms.end(), term) != align.terms.end();
+  };
+  fusion::AlignmentOptions out;
+  if (align.terms.empty()) {
+    out.bias = !scene.rest;  // an offset at rest is known better than one in motion
+  } else {
+    out = {has("delay"), has("bias"), has("gain"), has("misalignment")};
+  }
+  if (align.interpolation == "cubic") out.interpolation = fusion::Interpolation::cubic;
+  return out;
+}
+
+// All of the window, or stretches of it when it is long.
+class Gathered {
+ public:
+  Gathered(LearningWindow window, std::int64_t rows) : window_(window) {
+    const std::int64_t length = window.to - window.from, most = kMostValues / rows;
+    stretches_ = length <= most ? 1 : kStretches;
+    each_ = std::min(length, most / stretches_);
+  }
+  void take(std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+    for (std::int64_t s = 0; s < stretches_; ++s) {
+      const std::int64_t start = window_.from + (window_.to - window_.from - each_) * s /
+                                                    std::max<std::int64_t>(1, stretches_ - 1);
+      const std::int64_t from = std::max(first, start);
+      const std::int64_t to = std::min<std::int64_t>(first + samples.cols(), start + each_);
+      if (from >= to) continue;
+      if (data.samples.size() == 0) {
+        data.samples.resize(samples.rows(), stretches_ * each_);
+        truths_.resize(truth.rows(), stretches_ * each_);
+      }
+      const Eigen::Index at = s * each_ + from - start;
+      data.samples.middleCols(at, to - from) = samples.middleCols(from - first, to - from);
+      truths_.middleCols(at, to - from) = truth.middleCols(from - first, to - from);
+    }
+  }
+  void finish(bool by_reference) {
+    for (std::int64_t s = 0; s < stretches_; ++s) data.starts.push_back(s * each_);
+    if (by_reference) data.truth = truths_.row(0);
+  }
+  bool in_part() const { return stretches_ > 1; }
+  fusion::AlignmentData data;
+
+ private:
+  LearningWindow window_;
+  std::int64_t stretches_ = 1, each_ = 0;
+  Eigen::MatrixXd truths_;
+};
+
+}  // namespace
+
+SceneAlignment learn_scene_alignment(const Scene& scene,
+                                     const ReplayPlan& plan,
+                                     const Instants& instants,
+                                     Progress& progress) {
+  SceneAlignment out;
+  out.h = weights_of(scene, instants);
+  out.by_reference = instants.info().has_reference && scene.align->by != "sensors";
+  const LearningWindow window = window_of_alignment(scene, plan, instants);
+  out.from = window.from;
+  out.to = window.to;
+  const auto axes = static_cast<Eigen::Index>(instants.source().info().further_axes);
+  Gathered gathered(window, out.h.size() * (1 + axes));
+  instants.pass_recorded(
+      window.from,
+      window.to,
+      kLearningBlockOfAlignment,
+      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+        gathered.take(first, samples, truth);
+      },
+      progress);
+  gathered.finish(out.by_reference);
+  gathered.data.channels = out.h.size();
+  if (gathered.data.samples.size() > 0)
+    gathered.data.samples.topRows(out.h.size()).array().colwise() /= out.h.array();
+  try {
+    out.alignment = fusion::learn_alignment(gathered.data, options_of(scene));
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    problem.where = scene.file;
+    throw Error(problem);
+  }
+  if (gathered.in_part())
+    out.alignment.notes.push_back(
+        fmt::format("learnt from {} stretches of the window, {} instants in all",
+                    kStretches,
+                    gathered.data.samples.cols()));
+  return out;
+}
+
+AlignmentResult measure_alignment(const Scene& scene,
+                                  const ReplayPlan& plan,
+                                  const Instants& instants,
+                                  const SceneAlignment& alignment,
+                                  Warnings& warnings,
+                                  Progress& progress) {
+  AlignmentResult out;
+  out.learnt = alignment.alignment;
+  out.by_reference = alignment.by_reference;
+  out.applied = scene.align->apply;
+  const auto at = [&](std::int64_t instant) {
+    return instants.info().start_s + static_cast<double>(instant) / instants.info().rate_hz;
+  };
+  out.window = {at(alignment.from), at(alignment.to)};
+  out.overlaps = alignment.from < plan.run_to && alignment.to > plan.run_from;
+  if (out.overlaps)
+    warnings.add(
+        "alignment_in_evaluation",
+        "the alignment is learnt and judged on the same stretch: it looks better than it is",
+        "");
+  std::vector<Eigen::Index> used;
+  for (std::size_t i = 0; i < out.learnt.channels.size(); ++i)
+    if (out.learnt.channels[i].used) {
+      used.push_back(static_cast<Eigen::Index>(i));
+      out.budgeted.push_back(i);
+    }
+  const auto n = static_cast<Eigen::Index>(used.size());
+  const auto axes = static_cast<Eigen::Index>(instants.source().info().further_axes);
+  fusion::BudgetMeter meter(n, axes, plan.run_to - plan.run_from, out.by_reference);
+  Eigen::VectorXd cross;
+  each_aligned(
+      instants,
+      alignment,
+      plan.run_from,
+      plan.run_to,
+      [&](std::int64_t,
+          const Eigen::VectorXd& recorded,
+          const Eigen::VectorXd& aligned,
+          const Eigen::VectorXd& truth) {
+        fusion::cross_means(out.learnt, recorded, cross);
+        const Eigen::VectorXd undelayed = fusion::in_time(out.learnt, aligned, cross);
+        meter.push(recorded(used),
+                   undelayed(used),
+                   aligned(used),
+                   cross,
+                   truth.size() > 0 ? truth(0) : kNone);
+      },
+      progress);
+  out.budget = meter.result();
+  return out;
+}
+
+}  // namespace libchar

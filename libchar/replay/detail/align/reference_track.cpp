@@ -1,0 +1,102 @@
+#include "libchar/replay/detail/align/reference_track.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text/spelling.hpp"
+#include "libchar/core/units.hpp"
+
+namespace libchar {
+namespace {
+
+// A time within this share of a sample is the sample's own: rounding must not ask for a neighbour.
+constexpr double kOnSample = 1e-6;
+
+std::size_t column_of(const LogInfo& log, const std::string& channel, const std::string& scene) {
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    if (log.channels[c].name == channel) return c;
+    names.push_back(log.channels[c].name);
+  }
+  const auto near = nearest(channel, names);
+  throw Error({ErrorKind::input,
+               "E0900",
+               scene,
+               fmt::format("the reference {} has no channel of this name", log.file),
+               channel,
+               did_you_mean(near, "inspect lists the channels")});
+}
+
+}  // namespace
+
+double ReferenceTrack::at(std::size_t channel, double time_s) const {
+  const std::vector<double>& track = values[channel];
+  const double place = (time_s - start_s) * rate_hz;
+  const double below = std::floor(place + kOnSample);
+  if (!(below >= 0) || below >= static_cast<double>(track.size())) return kMissing;
+  const auto k = static_cast<std::size_t>(below);
+  const double rest = place - below;
+  if (rest <= kOnSample) return track[k];
+  return k + 1 < track.size() ? between(track[k], track[k + 1], rest, period) : kMissing;
+}
+
+double between(double a, double b, double share, double period) {
+  double step = b - a;
+  if (period > 0) step -= period * std::round(step / period);
+  return a + share * step;
+}
+
+double full_turn(const std::string& unit) {
+  const auto known = find_unit(unit);
+  return 2 * std::numbers::pi / (known && known->quantity == Quantity::angle ? known->to_si : 1);
+}
+
+ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Progress& progress) {
+  const SceneReference& reference = *scene.reference;
+  ReferenceTrack track;
+  if (!reference.recording) {
+    track.rate_hz = source.info().rate_hz;
+    track.units = source.info().reference_units;
+    track.values = source.reference_columns(progress);
+    if (scene.tilt) track.period = full_turn(track.units[0]);
+    return track;
+  }
+  ReadOptions reading = reference.reading;
+  if (reading.names.empty()) reading.channels = reference.channels;
+  Recording read;
+  try {
+    read = read_recording(*reference.recording, reading, progress);
+  } catch (const Error& error) {
+    if (error.problem().kind != ErrorKind::usage) throw;
+    Problem problem = error.problem();
+    problem.kind = ErrorKind::input;
+    if (problem.code.empty()) problem.code = "E0900";
+    throw Error(problem);
+  }
+  track.rate_hz = read.info.time.rate_hz;
+  if (!(track.rate_hz > 0))
+    throw Error({ErrorKind::input,
+                 "E0901",
+                 scene.file,
+                 fmt::format("the reference {} states no sampling rate", read.info.file),
+                 "",
+                 "reference: {recording: {file: …, rate_hz: …}}"});
+  for (const std::string& channel : reference.channels) {
+    const std::size_t column = column_of(read.info, channel, scene.file);
+    track.values.push_back(read.samples[column]);
+    track.units.push_back(read.info.channels[column].unit);
+  }
+  if (scene.tilt) track.period = full_turn(track.units[0]);
+  // Both clocks count from one epoch when both have stamps; else the logs begin together.
+  const LogInfo& recording = source.info().logs.at(0);
+  if (read.info.time.start_ns && recording.time.start_ns)
+    track.start_s = static_cast<double>(*read.info.time.start_ns - *recording.time.start_ns) * 1e-9;
+  track.log = std::move(read.info);
+  return track;
+}
+
+}  // namespace libchar

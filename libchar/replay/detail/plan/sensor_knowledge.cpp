@@ -1,0 +1,83 @@
+// Offsets and noise levels of the sensors, before anything is fused. A level is taken from the
+// scene's own figure, else from the sensor's model, else from the stretch at rest. Behind a filter
+// the first two are multiplied by what it leaves of white noise, the third is measured there.
+#include "libchar/replay/detail/plan/sensor_knowledge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/error.hpp"
+#include "libchar/replay/detail/plan/noise_level.hpp"
+#include "libchar/replay/detail/plan/plan.hpp"
+#include "libchar/replay/detail/plan/rest.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kRestBlock = 4096;
+
+RestMeter at_rest(const Scene& scene, const Instants& instants, Progress& progress) {
+  RestMeter meter(scene.sensors.size());
+  const std::int64_t from = std::max(instants.instant_at(scene.rest->from_s), instants.settled()),
+                     to = instants.instant_at(scene.rest->to_s);
+  if (to - from < 2)
+    throw Error({ErrorKind::input,
+                 "E0903",
+                 scene.file,
+                 "rest: the window holds fewer than two instants of the recording",
+                 "",
+                 instants.settled() > 0 ? "the filter has to settle first" : ""});
+  instants.pass(
+      from,
+      to,
+      kRestBlock,
+      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
+        meter.push(samples);
+      },
+      progress);
+  return meter;
+}
+
+}  // namespace
+
+SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress) {
+  SensorKnowledge out;
+  const std::size_t n = scene.sensors.size();
+  out.offsets.assign(n, 0);
+  out.noise_variances.assign(n, kMissing);
+  out.noise_sources.assign(n, "");
+  if (scene.rest) {
+    const RestMeter rest = at_rest(scene, instants, progress);
+    out.offsets = rest.means();
+    out.noise_variances = scene.preparation.filters() ? rest.variances() : rest.noise_variances();
+    out.noise_sources.assign(n, "rest");
+    // Gravity is no offset.
+    if (scene.tilt)
+      out.offsets[scene.tilt->accelerometer_x] = out.offsets[scene.tilt->accelerometer_z] = 0;
+  }
+  const InstantsInfo& info = instants.info();
+  for (std::size_t i = 0; i < n; ++i) {
+    const SceneSensor& sensor = scene.sensors[i];
+    const double to_fused = instants.factor(i) * instants.factor(i) * instants.noise_gain() /
+                            static_cast<double>(info.averaged);
+    if (sensor.noise) {
+      out.noise_variances[i] = *sensor.noise * *sensor.noise * to_fused;
+      out.noise_sources[i] = "the scene";
+    } else if (sensor.model) {
+      const double scale = sensor.scale * sensor.scale;
+      const std::uint64_t oversampling = scene.simulate    ? scene.simulate->oversampling
+                                         : scene.simulated ? scene.simulated->oversampling
+                                                           : 1;
+      const double variance =
+          sample_noise_variance(*sensor.model, instants.source().info().rate_hz, oversampling);
+      if (variance > 0) {
+        out.noise_variances[i] = variance * scale * to_fused;
+        out.noise_sources[i] = "the models";
+      }
+    }
+    if (!(out.noise_variances[i] > 0)) out.noise_sources[i].clear();
+  }
+  return out;
+}
+
+}  // namespace libchar

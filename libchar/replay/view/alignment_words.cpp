@@ -1,0 +1,119 @@
+#include "libchar/replay/view/alignment_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "libchar/core/text/readable.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::string_view kPartNames[] = {"offset", "gain", "cross", "delay", "jitter", "noise"};
+
+// "0.31 ± 0.02": the digits that the error leaves.
+std::string with_error(double value, double error, double scale = 1) {
+  if (!std::isfinite(error)) return value == 0 ? "–" : brief_text(scale * value, 3);
+  const double size = scale * error;
+  const int decimals =
+      size > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(size))), 0, 9) : 3;
+  return fmt::format("{:.{}f} ± {:.{}f}", scale * value, decimals, size, decimals);
+}
+
+std::string share_text(const fusion::PartShare& part) {
+  const auto percent = [](double share) { return fmt::format("{:.1f}", 100 * share); };
+  if (!std::isfinite(part.ci95.low)) return percent(part.share) + " %";
+  return fmt::format(
+      "{} % ({} … {})", percent(part.share), percent(part.ci95.low), percent(part.ci95.high));
+}
+
+WordTable learnt_table(const ReplayResult& r, const AlignmentResult& a) {
+  WordTable out;
+  const std::string unit = r.inputs[0].unit;
+  out.head = {"sensor", "delay, samples", unit.empty() ? "bias" : "bias, " + unit, "gain, %"};
+  const std::size_t axes = a.learnt.channels[0].cross.size();
+  for (std::size_t k = 0; k < axes; ++k)
+    out.head.push_back(axes == 1 ? "cross-axis, %" : fmt::format("cross-axis {}, %", k + 1));
+  for (std::size_t i = 0; i < a.learnt.channels.size(); ++i) {
+    const fusion::ChannelAlignment& c = a.learnt.channels[i];
+    std::vector<std::string> row = {r.sensors[i].name,
+                                    with_error(c.delay, c.delay_se),
+                                    with_error(c.bias, c.bias_se),
+                                    with_error(c.gain, c.gain_se, 100)};
+    for (std::size_t k = 0; k < axes; ++k)
+      row.push_back(with_error(c.cross[k], c.cross_se[k], 100));
+    out.rows.push_back(std::move(row));
+  }
+  return out;
+}
+
+WordTable budget_table(const ReplayResult& r, const AlignmentResult& a) {
+  WordTable out;
+  const std::string unit = r.inputs[0].unit;
+  out.head = {"sensor", unit.empty() ? "RMS" : "RMS, " + unit};
+  for (const std::string_view part : kPartNames) out.head.emplace_back(part);
+  for (std::size_t k = 0; k < a.budget.channels.size(); ++k) {
+    const fusion::ChannelBudget& c = a.budget.channels[k];
+    std::vector<std::string> row = {r.sensors[a.budgeted[k]].name, brief_text(c.rms, 4)};
+    for (const fusion::PartShare& part : c.parts) row.push_back(share_text(part));
+    out.rows.push_back(std::move(row));
+  }
+  if (a.budget.instants < 1) return out;
+  std::vector<std::string> all = {"fused, were it gone", ""};
+  for (const double saving : a.budget.savings)
+    all.push_back(fmt::format("{:+.1f} %", -100 * saving));
+  out.rows.push_back(std::move(all));
+  return out;
+}
+
+std::string how(const AlignmentResult& a) {
+  return fmt::format("Alignment learnt from {} to {} s ({} instants; {} is the truth), {}.",
+                     brief_text(a.window.from_s, 6),
+                     brief_text(a.window.to_s, 6),
+                     a.learnt.instants,
+                     a.by_reference ? "the reference" : "the mean of the sensors",
+                     a.applied ? "taken out of the sensors before they are fused"
+                               : "reported only: the sensors are fused as recorded");
+}
+
+std::string effect(const ReplayResult& r, const AlignmentResult& a) {
+  if (!(a.budget.before > 0))
+    return "Too few instants of the evaluation have samples of all sensors: no error budget.";
+  const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
+  return fmt::format(
+      "{}: {}{} as recorded, {}{} aligned (× {:.3f}), on {} instants with samples "
+      "of all sensors below their limits.",
+      a.by_reference ? "RMSE of the mean" : "Leave-one-out RMS of the mean",
+      brief_text(a.budget.before, 4),
+      unit,
+      brief_text(a.budget.after, 4),
+      unit,
+      a.budget.after / a.budget.before,
+      a.budget.instants);
+}
+
+}  // namespace
+
+std::string_view name_of(fusion::ErrorPart part) {
+  return kPartNames[static_cast<std::size_t>(part)];
+}
+
+AlignmentWords alignment_words(const ReplayResult& r, const AlignmentResult& a) {
+  AlignmentWords out;
+  out.sentences = {how(a), effect(r, a)};
+  if (a.overlaps)
+    out.sentences.emplace_back(
+        "It is learnt and judged on the same stretch: it looks better than it is.");
+  for (const std::string& note : a.learnt.notes) {
+    std::string sentence = note + ".";
+    sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+    out.sentences.push_back(std::move(sentence));
+  }
+  out.learnt = learnt_table(r, a);
+  out.budget = budget_table(r, a);
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,215 @@
+#include "libchar/replay/view/verdict.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text/readable.hpp"
+#include "libchar/replay/view/ranking.hpp"
+
+namespace libchar {
+namespace {
+
+/// Names of equals beyond so many are only counted.
+constexpr std::size_t kMostEquals = 4;
+constexpr double kClose = 1.05;  ///< times the best method's error
+
+std::string list_of(const std::vector<std::string>& names) {
+  if (names.size() == 1) return names[0];
+  const std::vector<std::string> head(names.begin(), names.end() - 1);
+  return fmt::format("{} and {}", fmt::join(head, ", "), names.back());
+}
+
+bool learns(const AlgorithmResult& a) {
+  return a.description->needs.reference;
+}
+
+// The cheapest of those that cannot be told from the best; where the record tells little, not one
+// whose error is clearly larger in it.
+const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
+  const AlgorithmResult* out = nullptr;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran && !a.bound && a.as_good_as_best && a.ns_per_sample > 0 &&
+        a.rmse <= kClose * r.algorithms[*r.best].rmse &&
+        (out == nullptr || a.ns_per_sample < out->ns_per_sample))
+      out = &a;
+  return out;
+}
+
+std::string regret_text(const ReplayResult& r, double regret) {
+  const std::string optimum = "the optimum of " + optimum_of(r);
+  // The best of a few filters may be the optimum itself.
+  if (std::abs(regret) < 1e-9) return optimum;
+  if (regret > 1) return fmt::format("{} times {}", brief_text(1 + regret), optimum);
+  return fmt::format(
+      "{} {} {}", percent_text(std::abs(regret)), regret >= 0 ? "above" : "below", optimum);
+}
+
+// "RMSE 0.0331 rad/s (95 %: 0.0329 to 0.0333), 0.1 % above the optimum of fixed weights"
+std::string figures(const ReplayResult& r, const AlgorithmResult& a) {
+  std::string out = fmt::format("{} {}{}",
+                                r.has_reference ? "RMSE" : "leave-one-out RMS",
+                                r.inputs.size() > 1 ? "of " + r.inputs[0].name + " " : "",
+                                error_text(a.rmse, r.inputs[0].unit));
+  if (std::isfinite(a.rmse_ci95.low) && std::isfinite(a.rmse_ci95.high))
+    out += fmt::format(
+        " (95 %: {} to {})", brief_text(a.rmse_ci95.low, 4), brief_text(a.rmse_ci95.high, 4));
+  for (std::size_t j = 1; j < std::min(a.inputs.size(), r.inputs.size()); ++j)
+    out += fmt::format(
+        ", of {} {}", r.inputs[j].name, error_text(a.inputs[j].error.rmse, r.inputs[j].unit));
+  if (std::isfinite(a.regret)) out += ", " + regret_text(r, a.regret);
+  return out;
+}
+
+std::string costs_of(const AlgorithmResult& a) {
+  std::string out;
+  if (std::isfinite(a.ns_per_sample))
+    out += ", " + duration_text(1e-9 * a.ns_per_sample) + " a sample";
+  if (a.peak_bytes) out += ", " + bytes_text(a.peak_bytes) + " of memory";
+  return out;
+}
+
+std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, bool costs) {
+  std::vector<std::string> equals;
+  for (const AlgorithmResult* a : ranked(r))
+    if (!a->bound && a->as_good_as_best && a->label != best.label)
+      equals.push_back(a->label + (learns(*a) ? " (learns from a reference)" : ""));
+  if (equals.empty()) {
+    const auto others =
+        std::count_if(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
+          return a.ran && !a.bound && std::isfinite(a.rmse) && a.label != best.label;
+        });
+    return others == 0 ? "No other method has a score."
+                       : "Every other method is worse, by more than one per cent, and the record "
+                         "is long enough to tell.";
+  }
+  const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
+  equals.resize(equals.size() - more);
+  if (more > 0) equals.push_back(fmt::format("{} more", more));
+  std::string out = fmt::format(
+      "Within one per cent of it, or not told from it by this record: {}.", list_of(equals));
+  const AlgorithmResult* cheap = cheapest_equal(r);
+  if (costs && cheap != nullptr && cheap->label != best.label &&
+      cheap->ns_per_sample < 0.8 * best.ns_per_sample)
+    out += fmt::format(" Of these {} is the cheapest, {} a sample.",
+                       cheap->label,
+                       duration_text(1e-9 * cheap->ns_per_sample));
+  return out;
+}
+
+// The best that needs no reference, when the best of all learns from one.
+std::string without_reference_sentence(const ReplayResult& r,
+                                       const AlgorithmResult& best,
+                                       bool costs) {
+  if (!learns(best)) return "";
+  for (const AlgorithmResult* a : ranked(r))
+    if (!a->bound && !learns(*a) && std::isfinite(a->rmse))
+      return fmt::format(
+          "{} learns from a reference; of the methods that need none {} is best: {}{}.",
+          best.label,
+          a->label,
+          figures(r, *a),
+          costs ? costs_of(*a) : "");
+  return best.label + " learns from a reference.";
+}
+
+std::string bounds_sentence(const ReplayResult& r) {
+  std::vector<std::string> bounds;
+  for (const AlgorithmResult* a : ranked(r))
+    if (a->bound && std::isfinite(a->rmse))
+      bounds.push_back(a->label + " " + error_text(a->rmse, r.inputs[0].unit));
+  return bounds.empty()
+             ? ""
+             : "For comparison, bounds that look at the reference of the run: " + list_of(bounds) +
+                   ".";
+}
+
+/// Whether the array is worth more than its best sensor.
+struct SensorSentence {
+  std::string text;
+  bool against_fusion = false;  ///< that sensor alone is better
+};
+
+SensorSentence sensor_sentence(const ReplayResult& r) {
+  if (!r.best_sensor || !r.best_over_sensor) return {};
+  const SensorResult& sensor = r.sensors[*r.best_sensor];
+  const AlgorithmResult& best = r.algorithms[*r.best];
+  const double ratio = best.rmse / sensor.error.rmse;
+  const Interval& interval = *r.best_over_sensor;
+  const std::string alone = fmt::format("{}, the best single sensor ({})",
+                                        sensor.name,
+                                        error_text(sensor.error.rmse, r.inputs[0].unit));
+  if (ratio > 1 + kPracticalTolerance && interval.low > 1)
+    return {fmt::format("Fusion does not pay here: the error of {} is {} larger than that of {}: "
+                        "use that sensor alone.",
+                        best.label,
+                        percent_text(ratio - 1),
+                        alone),
+            true};
+  if (ratio < 1 - kPracticalTolerance && interval.high < 1)
+    return {fmt::format("Fusion pays: its error is {} (95 %: {} to {}) below that of {}.",
+                        percent_text(1 - ratio),
+                        percent_text(1 - interval.high),
+                        percent_text(1 - interval.low),
+                        alone)};
+  return {fmt::format(
+      "Whether fusion pays is not resolved: its error is {} times that of {} (95 %: {} to {}).",
+      brief_text(ratio),
+      alone,
+      brief_text(interval.low),
+      brief_text(interval.high))};
+}
+
+std::string offsets_sentence(const ReplayResult& r) {
+  double share = 0;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran && a.blind) share = std::max(share, a.blind->offset_share);
+  return fmt::format(
+      "No method is recommended: {} of the differences between the sensors (mean squares) are in "
+      "their means, and offsets would decide. Give the scene a stretch at rest, a reference, or "
+      "sensors without offsets.",
+      percent_text(share, 3));
+}
+
+}  // namespace
+
+std::string optimum_of(const ReplayResult& r) {
+  return r.scene.tilt ? "tilt filters" : "fixed weights";
+}
+
+std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
+  if (r.offsets_decide) return {offsets_sentence(r)};
+  if (!r.best)
+    return {
+        "No algorithm has a score: without a reference and with these sensors nothing can be "
+        "compared."};
+  const AlgorithmResult& best = r.algorithms[*r.best];
+  std::vector<std::string> out = {
+      fmt::format("Use {}: {}{}.", best.label, figures(r, best), costs ? costs_of(best) : "")};
+  if (best.availability < 0.9995)
+    out[0] += fmt::format(" It has an estimate at {} of the instants.",
+                          percent_text(best.availability, 3));
+  const auto add = [&](const std::string& sentence) {
+    if (!sentence.empty()) out.push_back(sentence);
+  };
+  SensorSentence single = sensor_sentence(r);
+  if (single.against_fusion)
+    out.insert(out.begin(), std::move(single.text));
+  else
+    add(single.text);
+  add(without_reference_sentence(r, best, costs));
+  add(equals_sentence(r, best, costs));
+  if (r.has_reference)
+    add(bounds_sentence(r));
+  else
+    add("Without a reference nobody sees the errors that all sensors share.");
+  return out;
+}
+
+std::string replay_verdict(const ReplayResult& r, bool costs) {
+  return fmt::format("{}", fmt::join(verdict_sentences(r, costs), " "));
+}
+
+}  // namespace libchar

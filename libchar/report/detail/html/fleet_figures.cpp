@@ -1,0 +1,404 @@
+#include "libchar/report/detail/html/fleet_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/characterize/limits.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/html/html_tables.hpp"
+#include "libchar/report/detail/html/many_pieces.hpp"
+#include "libchar/report/detail/svg/svg_lot.hpp"
+
+namespace libchar {
+namespace {
+
+/// To a tenth of a degree, without zeros behind it.
+std::string celsius(double t) {
+  return brief_text(std::round(10 * t) / 10, 6);
+}
+
+std::string brackets(const Interval& i, double factor = 1, int digits = 3) {
+  return fmt::format(
+      "[{}, {}]", number_text(factor * i.low, digits), number_text(factor * i.high, digits));
+}
+
+/// "12 % [10, 14]", or "≤ 3 %" where none is seen.
+std::string spread_text(double spread,
+                        const Interval& ci95,
+                        bool logarithm,
+                        const std::string& unit) {
+  const double factor = logarithm ? 100 : 1;
+  const std::string behind = logarithm ? " %" : " " + unit;
+  if (!(ci95.low > 0)) return "≤ " + number_text(factor * ci95.high, 3) + behind;
+  return number_text(factor * spread, 3) + behind + " " + brackets(ci95, factor);
+}
+
+std::string not_counted(const LotCounts& c) {
+  std::string out;
+  for (const auto& [count, what] : {std::pair(c.not_detected, "not detected"),
+                                    std::pair(c.doubtful, "doubtful"),
+                                    std::pair(c.no_result, "without it")})
+    if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count_text(count), what);
+  return out;
+}
+
+std::string mean_text(const std::optional<LotFigures>& f, const std::string& unit) {
+  return f ? number_text(f->mean) + " " + brackets(f->mean_ci95, 1, 4) + " " + unit : "–";
+}
+
+/// Behind a mean that is not of all, or not only of those counted.
+std::string off_text(const QuantityLot& q) {
+  if (q.of_all) return fmt::format(", of {}", count_text(q.effects->count));
+  if (!q.left_out) return "";
+  const double most = 100 * (q.left_out->factor - 1);
+  return fmt::format(", too {} by up to {}",
+                     in_logarithm(q.quantity) ? "large" : "far from zero",
+                     most < 100 ? number_text(most, 2) + " %"
+                                : "a factor of " + number_text(q.left_out->factor, 2));
+}
+
+std::string channel_unit_text(const std::string& unit) {
+  return unit.empty() ? "U" : unit;
+}
+
+std::string batches_text(const QuantityLot& q) {
+  return q.batch_difference ? probability_text(q.batch_difference->p) : "";
+}
+
+std::string ppk_text(const Capability& c) {
+  if (!c.ppk) return "";
+  if (!std::isfinite(*c.ppk)) return *c.ppk > 0 ? ", no spread seen" : ", all above";
+  const auto end = [](double value) { return std::isfinite(value) ? number_text(value, 3) : "∞"; };
+  return fmt::format(
+      ", Ppk {} [{}, {}]", number_text(*c.ppk, 3), end(c.ppk_ci95.low), end(c.ppk_ci95.high));
+}
+
+std::string limit_cell(const QuantityLot& q) {
+  if (!q.capability) return "";
+  const Capability& c = *q.capability;
+  return fmt::format("≤ {}: {} fail, {} not decided{}",
+                     limit_text(c.text, c.most, q.unit),
+                     count_text(c.fail),
+                     count_text(c.not_decided),
+                     ppk_text(c));
+}
+
+LotAxis axis_of(const QuantityLot& q) {
+  LotAxis axis;
+  axis.logarithm = in_logarithm(q.quantity);
+  axis.title = title_of(q.quantity) + ", " + q.unit;
+  if (q.effects) axis.mean = q.effects->mean;
+  if (q.capability) axis.limit = std::log(q.capability->most);
+  return axis;
+}
+
+std::string chart_of(const FleetReport& report, const QuantityLot& q, const std::string& title) {
+  std::vector<std::string> beyond;
+  for (const ChartValue& v : q.chart->beyond) {
+    const double value = in_logarithm(q.quantity) ? std::exp(v.value) : v.value;
+    beyond.push_back(report.records[q.charted[v.index]].device + ": " + number_text(value) + " " +
+                     q.unit);
+  }
+  std::vector<ChartBound> bounds;
+  for (std::size_t i = 1; i < q.charted.size(); ++i) {
+    const std::size_t batch = report.lot->batch_of[q.charted[i]];
+    if (batch != report.lot->batch_of[q.charted[i - 1]])
+      bounds.push_back({i, batch_title(report.lot->batches[batch])});
+  }
+  // Of very many batches the bounds would be all that is seen.
+  if (bounds.size() > 60) bounds.clear();
+  return svg_control_chart(*q.chart, q.charted.size(), axis_of(q), beyond, bounds, title);
+}
+
+std::string batch_table(const QuantityLot& q) {
+  if (q.batches.empty()) return "";
+  constexpr std::size_t kMost = 200;
+  const bool logarithm = in_logarithm(q.quantity);
+  std::string rows =
+      "<div class=\"wide\"><table class=\"many\">\n" +
+      table_head({"Batch", "Mean", "Spread (sd)", "Median", "Counted", "Not counted"});
+  for (std::size_t b = 0; b < std::min(kMost, q.batches.size()); ++b) {
+    const BatchLot& one = q.batches[b];
+    rows += table_row(
+        {batch_title(one.batch),
+         mean_text(one.figures, q.unit) +
+             (one.in_figures > one.counts.counted ? ", of " + count_text(one.in_figures) : ""),
+         one.figures ? spread_text(one.figures->spread, one.figures->spread_ci95, logarithm, q.unit)
+                     : "–",
+         std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit,
+         fmt::format("{} of {}", count_text(one.counts.counted), count_text(one.counts.members)),
+         not_counted(one.counts)});
+  }
+  rows += "</tbody></table></div>\n";
+  if (q.batches.size() > kMost)
+    rows += fmt::format("<p class=\"note\">{} more batches stand in lot.json.</p>\n",
+                        q.batches.size() - kMost);
+  return folded(fmt::format("{} batches", q.batches.size()), rows);
+}
+
+std::string range_text(const Interval& range_c) {
+  return fmt::format("{} to {} °C", celsius(range_c.low), celsius(range_c.high));
+}
+
+/// How a temperature coefficient was found.
+std::string coefficient_sentence(const QuantityLot& q) {
+  if (!q.temperatures)
+    return "Found inside single recordings that have a thermometer, at the mean temperature of "
+           "each.";
+  const TemperatureRuns& t = *q.temperatures;
+  std::string out = fmt::format(
+      "Slope of the turn-on bias over temperature: {} with {} at {}. Its error is what the bias "
+      "differs by each time a device is switched on, {} (sd, {} degrees of freedom), not the "
+      "noise of one recording.",
+      plural(t.devices, "device"),
+      plural(t.recordings, "recording"),
+      range_text(t.range_c),
+      spread_text(t.repeatability, t.repeatability_ci95, false, channel_unit_text(q.channel_unit)),
+      t.dof);
+  if (t.in_one_recording > 0)
+    out += fmt::format(
+        " Of {} it was found inside a recording as well: fewer than have a slope, and not mixed "
+        "in.",
+        plural(t.in_one_recording, "device"));
+  return out;
+}
+
+/// At which temperature a turn-on bias is given.
+std::string reference_sentence(const QuantityLot& q) {
+  const TemperatureRuns& t = *q.temperatures;
+  std::string out = fmt::format(
+      "{} recorded at {}: their bias is given at {} °C by a line over temperature of "
+      "each, which is taken out of how it repeats.",
+      t.devices == 1 ? "1 device was" : count_text(t.devices) + " devices were",
+      range_text(t.range_c),
+      celsius(t.reference_c));
+  if (t.elsewhere > 0)
+    out +=
+        fmt::format(" {} recorded at one temperature far from that only: theirs is the bias there.",
+                    t.elsewhere == 1 ? "1 device was" : count_text(t.elsewhere) + " devices were");
+  if (t.dof < 1)
+    out +=
+        " No device shows how its bias repeats (three recordings, or two at one temperature), "
+        "so that no temperature coefficient can be given with an error.";
+  return out;
+}
+
+std::string slope_table(const QuantityLot& q, std::span<const DeviceRecord> records) {
+  if (!q.temperatures || q.temperatures->slopes.empty()) return "";
+  constexpr std::size_t kMost = 200;
+  const std::vector<DeviceSlope>& slopes = q.temperatures->slopes;
+  std::string rows = "<div class=\"wide\"><table class=\"many\">\n" +
+                     table_head({"Device", "Coefficient", "Recordings", "At"});
+  for (std::size_t i = 0; i < std::min(kMost, slopes.size()); ++i)
+    rows += table_row({records[slopes[i].recording].device,
+                       number_text(slopes[i].value) + " " + brackets(slopes[i].ci95) + " " + q.unit,
+                       count_text(slopes[i].recordings),
+                       range_text(slopes[i].temperature_c)});
+  rows += "</tbody></table></div>\n";
+  if (slopes.size() > kMost)
+    rows += fmt::format("<p class=\"note\">{} more devices stand in lot.json.</p>\n",
+                        count_text(slopes.size() - kMost));
+  return folded(fmt::format("Coefficients of {}", plural(slopes.size(), "device")), rows);
+}
+
+/// What the mean is worth where devices are missing in it.
+std::string left_out_sentence(const QuantityLot& q) {
+  const LeftOut& left = *q.left_out;
+  const std::size_t missing = q.counts.not_detected + q.counts.doubtful;
+  const std::string what =
+      fmt::format("Mean and spread are of the {} devices that count; {} are not in it ({}). ",
+                  count_text(q.counts.counted),
+                  count_text(missing),
+                  not_counted(q.counts));
+  const std::string of_all = fmt::format(
+      "[{}, {}] {}", number_text(left.mean_ci95.low), number_text(left.mean_ci95.high), q.unit);
+  if (!in_logarithm(q.quantity))
+    return what + fmt::format(
+                      "They are about zero: the mean of all may be up to {} % nearer to "
+                      "zero, in {}.",
+                      number_text(100 * left.share, 2),
+                      of_all);
+  return what + fmt::format(
+                    "If those are the smallest, the mean is too large by up to {} %: that of "
+                    "all is in {}, and their spread is at most {} %. Ppk is of those that "
+                    "count.",
+                    number_text(100 * (left.factor - 1), 2),
+                    of_all,
+                    number_text(100 * left.spread_high, 3));
+}
+
+/// Whom the mean is of where not all have a value.
+std::string of_all_sentence(const QuantityLot& q) {
+  return fmt::format(
+      "Mean and spread are of {} of {} devices: of those that are not detected or doubtful too, by "
+      "what their records show of the square, as values of a lognormal distribution. Not counted: "
+      "{}. Histogram, comparison of batches, chart and outliers are of the {} that count.",
+      count_text(q.effects->count),
+      count_text(q.counts.members),
+      not_counted(q.counts),
+      count_text(q.counts.counted));
+}
+
+std::string sentences(const QuantityLot& q) {
+  const bool logarithm = in_logarithm(q.quantity);
+  std::vector<std::string> out;
+  if (q.left_out) out.push_back(left_out_sentence(q));
+  if (q.of_all) out.push_back(of_all_sentence(q));
+  if (q.arithmetic)
+    out.push_back(fmt::format("Arithmetic mean {} {} {}, standard deviation of the devices {}.",
+                              number_text(q.arithmetic->mean),
+                              brackets(q.arithmetic->mean_ci95, 1, 4),
+                              q.unit,
+                              spread_text(q.arithmetic->sd, q.arithmetic->sd_ci95, false, q.unit)));
+  if (q.quantity == DeviceQuantity::temperature_coefficient)
+    out.push_back(coefficient_sentence(q));
+  else if (q.temperatures)
+    out.push_back(reference_sentence(q));
+  if (q.batch_difference) {
+    const BatchDifference& d = *q.batch_difference;
+    out.push_back(fmt::format(
+        "From batch to batch: {}, {} that batches alike differ as much; within a batch: {}.",
+        spread_text(d.between, d.between_ci95, logarithm, q.unit),
+        probability_text(d.p),
+        number_text((logarithm ? 100 : 1) * d.within, 3) + (logarithm ? " %" : " " + q.unit)));
+  }
+  if (q.repeats)
+    out.push_back(
+        fmt::format("From recording to recording of one device: {} ({} devices, {} recordings).",
+                    spread_text(q.repeats->within, q.repeats->within_ci95, logarithm, q.unit),
+                    count_text(q.repeats->devices),
+                    count_text(q.repeats->recordings)));
+  if (q.capability) {
+    const Capability& c = *q.capability;
+    std::string line = "Limit " + limit_cell(q);
+    if (c.cpk) line += fmt::format(", Cpk {}", number_text(*c.cpk, 3));
+    if (c.ppk)
+      line += fmt::format("; a normal distribution has {} % above", number_text(100 * c.above, 2));
+    out.push_back(line + ".");
+  }
+  return bullet_list(out, "facts");
+}
+
+/// Curves of one quantity, in the unit of the first.
+struct AllanFigure {
+  std::string measures, unit, deviation;
+  double to_si = 1;
+  std::vector<SvgCurve> curves;
+};
+
+AllanFigure& figure_of(const Channel& channel,
+                       const std::optional<Unit>& unit,
+                       std::vector<AllanFigure>& figures) {
+  const std::string measures = unit                   ? std::string(name_of(unit->quantity))
+                               : channel.unit.empty() ? "no unit"
+                                                      : "in " + channel.unit;
+  const auto at = std::find_if(
+      figures.begin(), figures.end(), [&](const AllanFigure& f) { return f.measures == measures; });
+  if (at != figures.end()) return *at;
+  return figures.emplace_back(AllanFigure{measures,
+                                          unit ? unit->symbol : channel_unit_text(channel.unit),
+                                          "",
+                                          unit ? unit->to_si : 1,
+                                          {}});
+}
+
+bool stands_out(const FleetLot& lot, std::size_t recording, std::size_t channel) {
+  for (const QuantityLot& q : lot.quantities)
+    for (const FleetOutlier& o : q.outliers)
+      if (o.recording == recording && o.channel == channel) return true;
+  return false;
+}
+
+void add_curve(const FleetReport& report,
+               std::size_t recording,
+               std::size_t channel,
+               std::vector<AllanFigure>& figures) {
+  const ChannelResult& result = report.recordings[recording].channels[channel];
+  const auto unit = find_unit(result.channel.unit);
+  AllanFigure& figure = figure_of(result.channel, unit, figures);
+  figure.deviation = name_of(result.allan.type);
+  SvgCurve curve = allan_svg(result.allan, unit ? unit->to_si / figure.to_si : 1);
+  curve.name = result.channel.name + " · " + report.records[recording].device;
+  curve.colour = figure.curves.size();
+  curve.strong = stands_out(*report.lot, recording, channel);
+  if (curve.strong) curve.name += " (stands out)";
+  figure.curves.push_back(std::move(curve));
+}
+
+}  // namespace
+
+std::string celsius_text(double t) {
+  return celsius(t) + " °C";
+}
+
+std::string group_title(const QuantityLot& q, const FleetLot& lot) {
+  return lot.types.size() < 2 ? q.group : q.group + " of " + (q.type.empty() ? "no type" : q.type);
+}
+
+std::vector<std::string> quantity_heads(const FleetLot& lot, bool of_kind) {
+  std::vector<std::string> out = {
+      "Group", "What", "Mean", "Spread (sd)", "95 % of devices", "Counted", "Not counted"};
+  if (lot.batches.size() > 1) out.emplace_back("Batches alike");
+  const bool limited = std::any_of(lot.quantities.begin(),
+                                   lot.quantities.end(),
+                                   [](const QuantityLot& q) { return q.capability.has_value(); });
+  if (limited && !of_kind) out.emplace_back("Limit");
+  return out;
+}
+
+/// Where the middle 95 % lie; of one device, its value.
+std::string devices_text(const QuantityLot& q) {
+  if (q.counts.counted == 0) return "–";
+  const std::string low = number_text(q.quantiles[1], 3);
+  if (q.counts.counted == 1) return fmt::format("{} {}", low, q.unit);
+  return fmt::format("{} … {} {}", low, number_text(q.quantiles[5], 3), q.unit);
+}
+
+std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lot) {
+  const bool logarithm = in_logarithm(q.quantity);
+  std::vector<std::string> out = {
+      group_title(q, lot),
+      title_of(q.quantity),
+      mean_text(q.figures, q.unit) + off_text(q),
+      q.figures ? spread_text(q.figures->spread, q.figures->spread_ci95, logarithm, q.unit) : "–",
+      devices_text(q),
+      fmt::format("{} of {}", count_text(q.counts.counted), count_text(q.counts.members)),
+      not_counted(q.counts)};
+  const std::size_t columns = quantity_heads(lot, q.of_kind).size();
+  if (lot.batches.size() > 1) out.push_back(batches_text(q));
+  if (out.size() < columns) out.push_back(limit_cell(q));
+  return out;
+}
+
+std::string allan_figures(const FleetReport& report) {
+  std::vector<AllanFigure> figures;
+  for (std::size_t r = 0; r < report.recordings.size(); ++r)
+    for (std::size_t c = 0; c < report.recordings[r].channels.size(); ++c)
+      add_curve(report, r, c, figures);
+  std::string out;
+  for (const AllanFigure& f : figures) {
+    const std::string drawing = svg_curves(f.curves,
+                                           {"averaging time τ, s",
+                                            f.deviation + ", " + f.unit,
+                                            "Allan curves of all channels, " + f.measures});
+    if (!drawing.empty()) out += "<h3>" + html_text(f.measures) + "</h3>\n" + drawing;
+  }
+  return out;
+}
+
+std::string quantity_figures(const FleetReport& report, const QuantityLot& q) {
+  constexpr std::size_t kFewestDrawn = 4;  // fewer stand in the table, and have no distribution
+  if (q.counts.counted < kFewestDrawn) return "";
+  const std::string title = title_of(q.quantity) + " of " + group_title(q, *report.lot);
+  std::string out = "<h3>" + html_text(title) + "</h3>\n<div class=\"plots\">\n" +
+                    svg_histogram(q.histogram, axis_of(q), "Histogram: " + title);
+  if (q.chart) out += chart_of(report, q, "Control chart: " + title);
+  return out + "</div>\n" + sentences(q) + slope_table(q, report.records) + batch_table(q);
+}
+
+}  // namespace libchar

@@ -1,0 +1,30 @@
+#pragma once
+// Cells and figures of a fleet's quantities.
+
+#include <string>
+#include <vector>
+
+#include "libchar/report/html/fleet_report.hpp"
+
+namespace libchar {
+
+/// "of mems" behind a channel where there are several types.
+std::string group_title(const QuantityLot& quantity, const FleetLot& lot);
+
+/// "22.5 °C", to a tenth of a degree.
+std::string celsius_text(double t);
+
+/// Heads and texts of a row: group, what, mean, spread, where 95 % lie, counted, not counted,
+/// batches, limit.
+std::vector<std::string> quantity_heads(const FleetLot& lot, bool of_kind);
+std::vector<std::string> quantity_cells(const QuantityLot& quantity, const FleetLot& lot);
+
+/// The Allan curves of all channels, a drawing for each quantity that they measure; "" where the
+/// recordings are not in memory.
+std::string allan_figures(const FleetReport& report);
+
+/// Histogram, control chart, batches, repeats, limit of one quantity; "" where nothing is known of
+/// it.
+std::string quantity_figures(const FleetReport& report, const QuantityLot& quantity);
+
+}  // namespace libchar

@@ -1,0 +1,123 @@
+#include "help/flag_names.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace sensorchar {
+namespace {
+
+struct FlagName {
+  std::string_view option;  ///< of the library
+  std::string_view flag;
+};
+
+// In the order of the alphabet. A function of the library stands for the command that calls it.
+constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
+                               {"algorithms", "sensorchar replay --list"},
+                               {"allow_outside", "--allow-outside"},
+                               {"anyway", "--anyway"},
+                               {"average", "--average"},
+                               {"axes", "--axes"},
+                               {"axis", "--axis"},
+                               {"band_hz", "--band"},
+                               {"bias_tau_s", "--airsim-tau"},
+                               {"budget_s", "--budget"},
+                               {"by_channel", "--by-channel"},
+                               {"channel_scale", "--scale"},
+                               {"channel_unit", "--unit"},
+                               {"channels", "--channel"},
+                               {"check", "--fail-if"},
+                               {"compare_replays", "--unlike"},
+                               {"correlation_s", "--correlation-time"},
+                               {"curve", "--curve"},
+                               {"date_order", "--date-order"},
+                               {"decimal", "--decimal"},
+                               {"delimiter", "--delimiter"},
+                               {"deterministic", "--deterministic"},
+                               {"dtype", "--dtype"},
+                               {"dynamic", "--dynamic"},
+                               {"encoding", "--encoding"},
+                               {"explain_replay", "--explain"},
+                               {"export_targets", "sensorchar model --list"},
+                               {"fault", "--fault"},
+                               {"fault_free_s", "--fault-free"},
+                               {"filter_step_s", "--filter-step"},
+                               {"floor_tau_s", "--floor-tau"},
+                               {"format", "--format"},
+                               {"from_s", "--from"},
+                               {"full_overlap", "--full-overlap"},
+                               {"gravity", "--gravity"},
+                               {"group_by", "--group-by"},
+                               {"header", "--header"},
+                               {"high_pass_hz", "--high-pass"},
+                               {"inflate", "--inflate"},
+                               {"kind", "--kind"},
+                               {"labels", "--label"},
+                               {"map", "--map"},
+                               {"memory_bytes", "--memory"},
+                               {"model", "--model"},
+                               {"models", "--models"},
+                               {"names", "--names"},
+                               {"nominal_frequency", "--nominal-frequency"},
+                               {"older", "--older"},
+                               {"order", "--order"},
+                               {"overflow_as_missing", "--overflow nan"},
+                               {"overlap", "--overlap"},
+                               {"overwrite", "--force"},
+                               {"partial", "--partial"},
+                               {"preset", "--preset"},
+                               {"program", "--program"},
+                               {"rate_hz", "--rate"},
+                               {"reference", "--reference"},
+                               {"reference_log", "--reference-log"},
+                               {"segment", "--segment"},
+                               {"sensors", "--sensors"},
+                               {"skip_repeated_header", "--repeated-header skip"},
+                               {"skip_rows", "--skip-rows"},
+                               {"skip_unreadable", "--skip-unreadable"},
+                               {"still", "--still"},
+                               {"target", "--to"},
+                               {"taus_s", "--taus"},
+                               {"temperature", "--temperature"},
+                               {"time_column", "--time-column"},
+                               {"time_source", "--time-source"},
+                               {"time_unit", "--time-unit"},
+                               {"to_s", "--to"},
+                               {"topic", "--topic"},
+                               {"units", "--units"},
+                               {"where", "--where"},
+                               {"x_range", "--x-range"},
+                               {"y_range", "--y-range"}};
+
+}  // namespace
+
+std::string with_flags(const std::string& message) {
+  std::string text;
+  std::size_t done = 0;
+  for (std::size_t open = message.find('`'); open != std::string::npos;) {
+    const std::size_t close = message.find('`', open + 1);
+    if (close == std::string::npos) break;
+    const std::string_view name(message.data() + open + 1, close - open - 1);
+    const auto* row = std::find_if(
+        std::begin(kFlags), std::end(kFlags), [&](const FlagName& f) { return f.option == name; });
+    if (row == std::end(kFlags)) {
+      open = close;
+      continue;
+    }
+    text += message.substr(done, open - done);
+    text += row->flag;
+    done = close + 1;
+    open = message.find('`', done);
+  }
+  return text + message.substr(done);
+}
+
+libchar::Problem with_flags(libchar::Problem problem) {
+  problem.where = with_flags(problem.where);
+  problem.what = with_flags(problem.what);
+  problem.hint = with_flags(problem.hint);
+  return problem;
+}
+
+}  // namespace sensorchar
