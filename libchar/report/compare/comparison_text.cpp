@@ -7,9 +7,9 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/tables/scores.hpp"
 
 namespace libchar {
 namespace {
@@ -38,17 +38,16 @@ Json sentences(const std::vector<std::string>& list) {
   return out;
 }
 
-std::string bytes(double value) {
-  return bytes_text(std::isfinite(value) ? std::optional(static_cast<std::uint64_t>(value))
-                                         : std::nullopt);
+const AlgorithmSummary& known(const AlgorithmSummary* one) {
+  static const AlgorithmSummary kNothing = [] {
+    AlgorithmSummary out;
+    out.rmse = out.regret = out.ns_per_sample = out.peak_bytes = kNone;
+    return out;
+  }();
+  return one != nullptr && one->ran ? *one : kNothing;
 }
 
-double value(const AlgorithmSummary* one, double AlgorithmSummary::*member) {
-  return one != nullptr && one->ran ? one->*member : std::nan("");
-}
-
-}  // namespace
-
+/// "+4.62 %", "0 %"; "–" for no number.
 std::string change_text(double change) {
   if (!std::isfinite(change)) return "–";
   if (change == 0) return "0 %";
@@ -57,12 +56,40 @@ std::string change_text(double change) {
                                    : fmt::format("{:+.2f} %", percent);
 }
 
+}  // namespace
+
 std::string side_of(const ComparedAlgorithm& row) {
   if (row.both_ran()) return "";
   if (row.a == nullptr) return row.b->ran ? "only in B" : "only in B, skipped";
   if (row.b == nullptr) return row.a->ran ? "only in A" : "only in A, skipped";
   return row.a->ran ? "skipped in B" : row.b->ran ? "skipped in A" : "skipped in both";
 }
+
+namespace {
+
+Table compared_table(const Comparison& c) {
+  const std::string score = c.a.has_reference ? "RMSE" : "leave-one-out RMS";
+  Table out("algorithm|" + score + " A|" + score +
+            " B|change|a sample A|B|change|memory A|B|error of B");
+  for (const ComparedAlgorithm& row : c.algorithms) {
+    const AlgorithmSummary &a = known(row.a), &b = known(row.b);
+    if (!a.ran && !b.ran && row.a != nullptr && row.b != nullptr) continue;
+    const std::string where = side_of(row);
+    out.add({row.label,
+             brief_text(a.rmse, 5),
+             brief_text(b.rmse, 5),
+             change_text(row.rmse_change),
+             time_cell(a.ns_per_sample),
+             time_cell(b.ns_per_sample),
+             change_text(row.ns_change),
+             memory_cell(a.peak_bytes),
+             memory_cell(b.peak_bytes),
+             where.empty() ? std::string(name_of(row.difference)) : where});
+  }
+  return out;
+}
+
+}  // namespace
 
 Json comparison_json(const Comparison& c) {
   Json out = {{"a", report(c.a)},
@@ -92,32 +119,8 @@ std::string comparison_text(const Comparison& c, std::size_t width) {
                   printable(c.b.scene_name.empty() ? c.b.scene_file : c.b.scene_name));
   for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
   for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
-  const std::string score = c.a.has_reference ? "RMSE" : "leave-one-out";
-  std::vector<std::vector<std::string>> rows = {{"algorithm",
-                                                 score + " A",
-                                                 score + " B",
-                                                 "change",
-                                                 "ns/sample A",
-                                                 "B",
-                                                 "change",
-                                                 "memory A",
-                                                 "B",
-                                                 "error of B"}};
-  for (const ComparedAlgorithm& row : c.algorithms) {
-    const std::string where = side_of(row);
-    if (where == "skipped in both") continue;
-    rows.push_back({printable(row.label),
-                    brief_text(value(row.a, &AlgorithmSummary::rmse), 5),
-                    brief_text(value(row.b, &AlgorithmSummary::rmse), 5),
-                    change_text(row.rmse_change),
-                    brief_text(value(row.a, &AlgorithmSummary::ns_per_sample), 3),
-                    brief_text(value(row.b, &AlgorithmSummary::ns_per_sample), 3),
-                    change_text(row.ns_change),
-                    bytes(value(row.a, &AlgorithmSummary::peak_bytes)),
-                    bytes(value(row.b, &AlgorithmSummary::peak_bytes)),
-                    where.empty() ? std::string(name_of(row.difference)) : where});
-  }
-  return out + "\n" + text_table(rows, "", true, width) + "\n" + printable(c.verdict) + "\n";
+  return out + "\n" + terminal_table(compared_table(c), {width}, "") + "\n" + printable(c.verdict) +
+         "\n";
 }
 
 std::string comparison_markdown(const Comparison& c) {
@@ -137,27 +140,8 @@ std::string comparison_markdown(const Comparison& c) {
     for (const std::string& sentence : *lists[i])
       out += fmt::format("- {}\n", markdown_text(sentence));
   }
-  const char* score = c.a.has_reference ? "RMSE" : "leave-one-out RMS";
-  out += fmt::format(
-      "\n| algorithm | {} A | {} B | change | resolved | a sample A | a sample B | memory A | "
-      "memory B |\n|---|---|---|---|---|---|---|---|---|\n",
-      score,
-      score);
-  for (const ComparedAlgorithm& row : c.algorithms) {
-    const std::string where = side_of(row);
-    if (where == "skipped in both") continue;
-    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                       markdown_text(row.label),
-                       brief_text(value(row.a, &AlgorithmSummary::rmse), 5),
-                       brief_text(value(row.b, &AlgorithmSummary::rmse), 5),
-                       change_text(row.rmse_change),
-                       where.empty() ? std::string(name_of(row.difference)) : where,
-                       duration_text(1e-9 * value(row.a, &AlgorithmSummary::ns_per_sample)),
-                       duration_text(1e-9 * value(row.b, &AlgorithmSummary::ns_per_sample)),
-                       bytes(value(row.a, &AlgorithmSummary::peak_bytes)),
-                       bytes(value(row.b, &AlgorithmSummary::peak_bytes)));
-  }
-  return out + "\nResolved: the 95 % intervals of the two do not overlap.\n";
+  return out + "\n" + table_text(compared_table(c)) +
+         "\nResolved: the 95 % intervals of the two do not overlap.\n";
 }
 
 }  // namespace libchar

@@ -42,7 +42,7 @@ std::string characterization_text(const CharacterizationView& view, const TextLo
     if (!c.fit) continue;  // then the sentence is made of them
     for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
   }
-  if (result.limits) text += limits_text(*result.limits, look.colours);
+  if (result.limits) text += limits_text(*result.limits, look);
   return text;
 }
 
