@@ -114,31 +114,43 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
   return out;
 }
 
-// A consumer takes what the file says for known. What is not is refused, or goes with a sentence.
-void answer_misfit(const ExportTarget& target,
-                   const SensorGroup& group,
-                   const ExportOptions& options,
-                   std::vector<std::string>& notes) {
+// Those of the file, and what the statuses say where nobody wrote findings.
+std::vector<Finding> findings_of(const SensorModel& m) {
+  std::vector<Finding> out = m.findings;
+  std::string terms;
+  for (std::size_t t = 0; t < kTerms; ++t)
+    if (m.noise[t].status == Status::misfit)
+      terms += fmt::format("{}{}", terms.empty() ? "" : ", ", kTermNames[t].key);
+  if (!terms.empty() && worst_of(out) != Severity::bad)
+    out.push_back(
+        finding("misfit", terms + ": misfit, the noise terms do not describe the recording"));
+  return out;
+}
+
+// A consumer takes what the file says for known: numbers that are not to be relied on are refused, what asks for a look
+// goes with a sentence.
+void answer_findings(const ExportTarget& target,
+                     const SensorGroup& group,
+                     const ExportOptions& options,
+                     std::vector<std::string>& notes) {
   if (target.takes.status) return;
-  for (const SensorModel* m : group.all) {
-    std::string terms;
-    for (std::size_t t = 0; t < kTerms; ++t)
-      if (m->noise[t].status == Status::misfit)
-        terms += fmt::format("{}{}", terms.empty() ? "" : ", ", kTermNames[t].key);
-    if (terms.empty()) continue;
-    const std::string what =
-        fmt::format("{} of {}: misfit, the noise terms do not describe the recording",
-                    terms,
-                    printable(m->channel, 40));
-    if (!options.anyway)
-      throw Error({ErrorKind::input,
-                   "E0594",
-                   "",
-                   what,
-                   "",
-                   "record again where the sensor is at rest, or export it with `anyway`"});
-    notes.push_back(what);
-  }
+  for (const SensorModel* m : group.all)
+    for (const Finding& one : findings_of(*m)) {
+      if (one.severity == Severity::note) continue;
+      const std::string what =
+          fmt::format("{}: {}", printable(m->channel, 40), printable(one.sentence));
+      if (one.severity == Severity::bad && !options.anyway)
+        throw Error({ErrorKind::input,
+                     "E0594",
+                     "",
+                     what,
+                     "",
+                     one.help.empty()
+                         ? "record again where the sensor is at rest, or export it with `anyway`"
+                         : as_part(one.help[0].sentence) + settings_text(one.help[0]) +
+                               ", or export it with `anyway`"});
+      notes.push_back(what);
+    }
 }
 
 void drop_repeated(std::vector<std::string>& notes) {
@@ -184,7 +196,7 @@ Export export_models(const ExportTarget& target,
   SensorGroup group = group_sensors(models, options.axis);
   check_needs(target, group);
   group.unexpressed = unexpressed(target, group);
-  answer_misfit(target, group, options, group.unexpressed);
+  answer_findings(target, group, options, group.unexpressed);
   Export out = target.write(group, options);
   out.notes.insert(out.notes.begin(), group.unexpressed.begin(), group.unexpressed.end());
   if (options.inflate != 1 && target.takes.inflate)

@@ -43,7 +43,9 @@ AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
   if (c.value && *c.value > 0) out.value = *c.value * factor;
   if (!c.value && c.upper95 && *c.upper95 > 0) out.limit = *c.upper95 * factor;
   const double driving = driving_density(placed.model->gauss_markov);
-  if (term != Term::walk || !(driving > 0)) return out;
+  // An undetermined process says no more of slow noise than the terms' limits do.
+  if (term != Term::walk || !(driving > 0) || doubted(placed.model->gauss_markov.status))
+    return out;
   out.value = std::hypot(out.value.value_or(0), driving * factor);
   out.driven = true;
   return out;

@@ -85,6 +85,16 @@ bool has_step(std::span<const Event> events) {
   });
 }
 
+void report_stationarity(NoiseFit& fit) {
+  const Stationarity& found = fit.stationarity;
+  if (found.steady) return;
+  Finding changed = finding(
+      "not_stationary", found.sentence, "the noise is not the same throughout the recording");
+  if (!found.noticeable) changed.severity = Severity::note;
+  changed.where.time_s = {found.smallest_s, found.largest_s};
+  fit.findings.push_back(std::move(changed));
+}
+
 NoiseFit fit_whole(std::span<const double> record,
                    double rate_hz,
                    const AllanCurve* allan,
@@ -123,7 +133,7 @@ NoiseFit fit_whole(std::span<const double> record,
   add_spike_answer(despiked.answer, fit);
   if (options.remedies && options.stationarity) {
     fit.stationarity = test_stationarity(data, rate_hz, fit);
-    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+    report_stationarity(fit);
   }
   return fit;
 }
@@ -158,7 +168,7 @@ NoiseFit fit_sums(RecordSums sums,
   add_spike_answer(answer, fit);
   if (options.remedies && options.stationarity) {
     fit.stationarity = test_stationarity(used, events, rate_hz, fit);
-    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+    report_stationarity(fit);
   }
   return fit;
 }

@@ -255,11 +255,11 @@ class Rosbag2Reader final : public TopicReader {
   void add(const Warnings& found, Warnings& warnings) const {
     const std::string name = name_of(parts_[at_].file);
     for (const Warning& one : found.list()) {
-      const std::uint64_t places = one.places.size();
-      for (const std::string& place : one.places)
-        warnings.add(one.code, one.message, place.empty() ? name : name + ", " + place);
+      const std::uint64_t places = one.where.rows.size();
+      for (const std::string& place : one.where.rows)
+        warnings.add(one.code, one.sentence, place.empty() ? name : name + ", " + place);
       if (one.count > places)
-        warnings.add(one.code, one.message, places == 0 ? name : "", one.count - places);
+        warnings.add(one.code, one.sentence, places == 0 ? name : "", one.count - places);
     }
   }
 

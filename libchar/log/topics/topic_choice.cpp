@@ -175,8 +175,8 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
   }
   if (!losses.empty()) {
     const Warning& first = losses.list().front();
-    what += ": " + first.message;
-    if (!first.places.empty()) what += fmt::format(" ({})", first.places.front());
+    what += ": " + first.sentence;
+    if (!first.where.rows.empty()) what += fmt::format(" ({})", first.where.rows.front());
   }
   throw Error({ErrorKind::input, "E0426", file, std::move(what), std::move(got), std::move(hint)});
 }

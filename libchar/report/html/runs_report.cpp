@@ -155,14 +155,16 @@ std::string channel_part(const RunsReport& report, const PooledChannel& c) {
   out += "<div class=\"wide\"><table class=\"many\">\n" + table_head(heads) + "<tr>";
   for (const std::string& cell : coefficient_cells(c.channel, c.fit))
     out += "<td class=\"n\">" + html_text(cell) + "</td>";
-  out += "</tr></tbody></table></div>\n" + bullet_list(c.fit.sentences, "cautions");
+  out += "</tr></tbody></table></div>\n" + findings_list(c.fit.findings);
   return out + curves_of(report, c) + runs_rows(report, c) + "</section>\n";
 }
 
 SensorModel model_of(const RunsReport& report, const PooledChannel& c) {
   const ChannelResult& first = channel_in(report, c, c.runs[0].run);
-  SensorModel model = sensor_model_from(
-      c.channel, report.runs[c.runs[0].run].log, first.quality, c.fit, first.allan);
+  ChannelResult pooled = first;
+  pooled.channel = c.channel;
+  pooled.fit = c.fit;
+  SensorModel model = sensor_model_from(pooled, report.runs[c.runs[0].run].log);
   model.obtained = fmt::format("fit of {} recordings together", c.runs.size());
   // One hash is that of one file.
   model.recording_file =
@@ -216,7 +218,7 @@ std::string runs_html(const RunsReport& report) {
 std::string runs_text(const RunsReport& report, const TextLook& look) {
   std::string out = printable(report.pooled->verdict) + "\n";
   for (const PooledChannel& c : report.pooled->channels) {
-    out += "\n" + fit_text(c.channel, c.fit, look);
+    out += "\n" + fit_text(c.channel, c.fit, look) + findings_text(c.fit.findings, 5, look.colours);
     for (const std::string& sentence : c.sentences) out += "  " + printable(sentence) + "\n";
   }
   for (const std::string& problem : report.pooled->problems)

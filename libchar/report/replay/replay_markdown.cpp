@@ -169,9 +169,9 @@ std::string remarks_section(const ReplayView& view) {
                        markdown_text(message),
                        count > 1 ? fmt::format(" ({} ×)", count) : "");
   };
-  for (const Warning& w : view.result->warnings.list()) add("", w.message, w.count);
+  for (const Warning& w : view.result->warnings.list()) add("", w.sentence, w.count);
   for (const LogInfo& log : view.result->logs)
-    for (const Warning& w : log.warnings.list()) add(log.file, w.message, w.count);
+    for (const Warning& w : log.warnings.list()) add(log.file, w.sentence, w.count);
   for (const AlgorithmRemark& remark : view.remarks)
     add(remark.label, remark.message, remark.count);
   return out.empty() ? "" : "\n## Warnings\n\n" + out;

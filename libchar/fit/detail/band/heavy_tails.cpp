@@ -28,11 +28,12 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
   white.ci95.high = *white.value * std::pow(white.ci95.high / *white.value, wider);
   white.ci95.low = *white.value * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider);
   if (wider > 1.05)
-    fit.sentences.push_back(
+    fit.findings.push_back(finding(
+        "heavy_tails",
         fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences "
                     "{} instead of 3): the interval of N is {} times as wide for it.",
                     brief_text(difference_kurtosis),
-                    brief_text(wider, 2)));
+                    brief_text(wider, 2))));
 }
 
 }  // namespace libchar

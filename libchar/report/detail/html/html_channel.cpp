@@ -332,7 +332,7 @@ std::string quality(const ChannelView& view) {
     out += table_row({"Number format",
                       "32-bit floats, in steps of " + number_text(q.float32_step, 2) + " " + unit});
   out += "</tbody></table>\n" + lines_table(view);
-  return out + bullet_list(q.suggestions, "plain");
+  return out + findings_list(q.findings);
 }
 
 std::string consumers(const ChannelView& view, double rate_hz) {
@@ -411,8 +411,7 @@ std::string channel_section(const ChannelView& view,
       view.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
                         : " <span class=\"unit\">" + html_text(view.shown_unit) + "</span>");
   out += "<p class=\"sentence\">" + html_text(view.summary) + "</p>\n";
-  out += bullet_list(view.cautions, "cautions") + bullet_list(view.beside_terms, "plain");
-  if (c.fit) out += bullet_list(c.fit->sentences, "plain");
+  out += findings_list(view.judgement.findings) + bullet_list(view.beside_terms, "plain");
   if (layout.trace) out += trace_plot(view, index, log);
   out += curve_plots(view, index);
   if (c.fit)

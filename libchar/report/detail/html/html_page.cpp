@@ -102,8 +102,8 @@ std::string warnings_part(const Warnings& warnings) {
   out += "<div class=\"wide\"><table>\n" + table_head({"Kind", "What", "Count", "First places"});
   for (const Warning& w : warnings.list()) {
     std::string places;
-    for (const std::string& place : w.places) places += (places.empty() ? "" : ", ") + place;
-    out += table_row({w.code, w.message, count_text(w.count), places});
+    for (const std::string& place : w.where.rows) places += (places.empty() ? "" : ", ") + place;
+    out += table_row({w.code, w.sentence, count_text(w.count), places});
   }
   return out + "</tbody></table></div>\n";
 }

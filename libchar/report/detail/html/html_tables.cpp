@@ -48,6 +48,31 @@ std::string rating_badge(Rating rating) {
       "<span class=\"badge {}\">{} {}</span>", name_of(rating), sign, rating_word(rating));
 }
 
+namespace {
+
+std::string finding_item(const Finding& one) {
+  std::string out = fmt::format("<li class=\"{}\" title=\"{}\">", name_of(one.severity), one.code) +
+                    html_text(one.sentence);
+  for (const Finding::Help& help : one.help)
+    out += " <span class=\"help\">" + html_text(help.sentence) + "</span>";
+  return out + "</li>\n";
+}
+
+}  // namespace
+
+std::string findings_list(const std::vector<Finding>& findings) {
+  constexpr std::size_t kShown = 5;
+  std::string shown, rest;
+  for (std::size_t i = 0; i < findings.size(); ++i)
+    (i < kShown ? shown : rest) += finding_item(findings[i]);
+  if (shown.empty()) return "";
+  const auto list = [](const std::string& items) {
+    return "<ul class=\"findings\">\n" + items + "</ul>\n";
+  };
+  return list(shown) +
+         (rest.empty() ? "" : folded(fmt::format("{} more", findings.size() - kShown), list(rest)));
+}
+
 std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {
   if (items.empty()) return "";
   std::string out = fmt::format("<ul class=\"{}\">\n", css_class);

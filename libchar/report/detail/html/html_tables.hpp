@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libchar/characterize/judgement.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/text/term_cells.hpp"
 
 namespace libchar {
@@ -21,6 +22,8 @@ std::string interval_span(const ShownValue& shown);
 std::string folded(const std::string& summary, const std::string& body, bool open = false);
 /// "✓ good", "! caution", "✗ do not use": with its colour a sign and a word.
 std::string rating_badge(Rating rating);
+/// The worst first, with their help; those behind the fifth can be unfolded. Nothing where there is none.
+std::string findings_list(const std::vector<Finding>& findings);
 /// "<ul>…": nothing when there is no item.
 std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class);
 
