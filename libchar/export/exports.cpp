@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/decimal.hpp"

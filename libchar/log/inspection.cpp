@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"

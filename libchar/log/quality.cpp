@@ -42,6 +42,16 @@ class DistinctValues {
     values_.push_back(value);
   }
 
+  static void layout(StateWriter& to, const DistinctValues& values) { to.reals(values.values_); }
+  static void layout(StateReader& from, DistinctValues& values) {
+    const std::vector<double> distinct = from.reals();
+    if (distinct.size() > kDistinct) from.refuse("more distinct values than are kept");
+    for (const double value : distinct) {
+      if (!std::isfinite(value)) from.refuse("a distinct value");
+      values.add(value);
+    }
+  }
+
  private:
   static constexpr int kLeastBits = 4;
 
@@ -120,21 +130,10 @@ struct Extreme {
            in_front + behind >= kSaturatedRun;
     run = later.value < value ? 0 : all ? in_front + later.run : later.run;
   }
-  void write_state(StateWriter& to) const {
-    to.real(value);
-    to.real(next);
-    to.numbers(std::array{run, count, at_next});
-    to.flag(runs);
-  }
-  void read_state(StateReader& from) {
-    value = from.real();
-    next = from.real();
-    const std::vector<std::uint64_t> counts = from.numbers();
-    if (counts.size() != 3) from.refuse("an end of the range");
-    run = counts[0];
-    count = counts[1];
-    at_next = counts[2];
-    runs = from.flag();
+  static void layout(auto& at, auto& end) {
+    at(end.value, end.next);
+    at.group("an end of the range", end.run, end.count, end.at_next);
+    at(end.runs);
   }
 };
 
@@ -329,15 +328,9 @@ class WrapWatch {
     signs.wraps = count_;
     signs.period = with_digits(period, 3 * std::sqrt(rest / count) + 1e-9 * period);
   }
-  void write_state(StateWriter& to) const {
-    to.number(count_);
-    to.reals(std::array{sum_, size_, least_});
-  }
-  void read_state(StateReader& from) {
-    count_ = from.number();
-    const std::vector<double> x = from.reals();
-    if (x.size() != 3) from.refuse("jumps");
-    sum_ = x[0], size_ = x[1], least_ = x[2];
+  static void layout(auto& at, auto& w) {
+    at(w.count_);
+    at.group("jumps", w.sum_, w.size_, w.least_);
   }
 
  private:
@@ -401,21 +394,11 @@ class CounterWatch {
     down_.join(later.down_);
     judge();
   }
-  void write_state(StateWriter& to) const {
-    to.flag(possible_);
-    to.numbers(std::array{steps_, same_, up_.count, down_.count});
-    to.reals(std::array{usual_, up_.least, up_.largest, down_.least, down_.largest});
-  }
-  void read_state(StateReader& from) {
-    possible_ = from.flag();
-    const std::vector<std::uint64_t> n = from.numbers();
-    const std::vector<double> x = from.reals();
-    if (n.size() != 4 || x.size() != 5) from.refuse("a counter");
-    steps_ = n[0];
-    same_ = n[1];
-    usual_ = x[0];
-    up_ = {n[2], x[1], x[2]};
-    down_ = {n[3], x[3], x[4]};
+  static void layout(auto& at, auto& c) {
+    auto &up = c.up_, &down = c.down_;
+    at(c.possible_);
+    at.group("a counter", c.steps_, c.same_, up.count, down.count);
+    at.group("a counter", c.usual_, up.least, up.largest, down.least, down.largest);
   }
 
   /// Nearly all steps are one.
@@ -596,7 +579,6 @@ struct QualityMeter::State {
   Beginning beginning;
   std::uint64_t pushed = 0;
   bool float32 = true;
-  bool any_fraction = false;
   // The sample before the block, then samples until the block is full; with it whether a sample
   // does not follow the one before directly (missing samples between). Room for as many as came so
   // far.
@@ -618,7 +600,29 @@ struct QualityMeter::State {
   bool may_saturate(std::size_t levels) const;
   void join(const State& later);
   void join_runs(const State& later, bool direct);
+  static void layout(auto& at, auto& s);
 };
+
+void QualityMeter::State::layout(auto& at, auto& s) {
+  constexpr std::string_view kWhat = "the quality of a channel";
+  auto& d = s.differences;
+  auto& b = s.beginning;
+  at.group(kWhat, s.values.origin, s.values.n, s.values.mean, s.values.m2);
+  at.group(kWhat, d.n, d.s1, d.s2, d.s3, d.s4);
+  DistinctValues::layout(at, s.distinct);
+  WrapWatch::layout(at, s.odd.wraps);
+  at(s.odd.resting.value);
+  at(s.odd.resting.count);
+  CounterWatch::layout(at, s.odd.counter);
+  Extreme::layout(at, s.top);
+  Extreme::layout(at, s.bottom);
+  at.group(kWhat, s.missing, s.beyond, s.run, s.longest_run, s.repeated, s.pushed);
+  at.group(kWhat, s.previous, s.minimum, s.maximum);
+  at.group(kWhat, s.joined, s.float32);
+  at(b.value);
+  at.group(kWhat, b.run, b.equal);
+  at.group(kWhat, b.at_once, b.any, b.run_over, b.over);
+}
 
 void QualityMeter::State::push(std::span<const double> samples) {
   if (!beginning.over) beginning.push(samples, pushed == 0);
@@ -960,67 +964,14 @@ void QualityMeter::join(const QualityMeter& later) {
 void QualityMeter::write_state(StateWriter& to) const {
   State s = *state_;
   s.process_held();
-  to.reals(std::array{s.values.origin, s.values.n, s.values.mean, s.values.m2});
-  const DifferenceMoments& d = s.differences;
-  to.reals(std::array{d.n, d.s1, d.s2, d.s3, d.s4});
-  to.reals(s.distinct.values());
-  s.odd.wraps.write_state(to);
-  to.real(s.odd.resting.value);
-  to.number(s.odd.resting.count);
-  s.odd.counter.write_state(to);
-  s.top.write_state(to);
-  s.bottom.write_state(to);
-  to.numbers(std::array{s.missing, s.beyond, s.run, s.longest_run, s.repeated, s.pushed});
-  to.reals(std::array{s.previous, s.minimum, s.maximum});
-  to.flags(std::array<unsigned char, 2>{s.joined, s.float32});
-  const Beginning& b = s.beginning;
-  to.real(b.value);
-  to.numbers(std::array{b.run, b.equal});
-  to.flags(std::array<unsigned char, 4>{b.at_once, b.any, b.run_over, b.over});
+  State::layout(to, s);
 }
 
 void QualityMeter::read_state(StateReader& from) {
   State s;
-  const auto reals = [&](std::size_t n) {
-    std::vector<double> x = from.reals();
-    if (x.size() != n) from.refuse("the quality of a channel");
-    return x;
-  };
-  const auto numbers = [&](std::size_t n) {
-    std::vector<std::uint64_t> x = from.numbers();
-    if (x.size() != n) from.refuse("the quality of a channel");
-    return x;
-  };
-  const auto v = reals(4), d = reals(5);
+  State::layout(from, s);
   constexpr double kExact = 0x1p53;  // a count is whole up to here
-  if (!(v[1] >= 0 && v[1] <= kExact)) from.refuse("the number of its samples");
-  s.values = {v[0], v[1], v[2], v[3]};
-  s.differences = {d[0], d[1], d[2], d[3], d[4]};
-  const std::vector<double> distinct = from.reals();
-  if (distinct.size() > kDistinct) from.refuse("more distinct values than are kept");
-  for (const double value : distinct) {
-    if (!std::isfinite(value)) from.refuse("a distinct value");
-    s.distinct.add(value);
-  }
-  s.odd.wraps.read_state(from);
-  s.odd.resting.value = from.real();
-  s.odd.resting.count = from.number();
-  s.odd.counter.read_state(from);
-  s.top.read_state(from);
-  s.bottom.read_state(from);
-  const auto n = numbers(6);
-  s.missing = n[0], s.beyond = n[1], s.run = n[2];
-  s.longest_run = n[3], s.repeated = n[4], s.pushed = n[5];
-  const auto x = reals(3);
-  s.previous = x[0], s.minimum = x[1], s.maximum = x[2];
-  const std::vector<unsigned char> flags = from.flags();
-  const double first = from.real();
-  const auto runs = numbers(2);
-  const std::vector<unsigned char> begun = from.flags();
-  if (flags.size() != 2 || begun.size() != 4) from.refuse("the quality of a channel");
-  s.joined = flags[0] != 0, s.float32 = flags[1] != 0;
-  s.beginning = {
-      first, begun[0] != 0, runs[0], runs[1], begun[1] != 0, begun[2] != 0, begun[3] != 0};
+  if (!(s.values.n >= 0 && s.values.n <= kExact)) from.refuse("the number of its samples");
   *state_ = std::move(s);
 }
 

@@ -104,7 +104,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
     if (format.certain != nullptr && format.certain(front)) return format;
   if (const Format* format = format_by_suffix(path)) return *format;
   for (const Format& format : formats())
-    if (format.sniff(path, front)) return format;
+    if (format.sniff != nullptr && format.sniff(path, front)) return format;
   const auto words = format_words();
   throw Error({ErrorKind::input,
                "E0102",

@@ -8,11 +8,9 @@
 #include <numeric>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fit/detail/events/look_elsewhere.hpp"
 #include "libchar/fit/detail/events/regression.hpp"
+#include "libchar/fit/detail/events/scans.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
-#include "libchar/fit/detail/events/shapes.hpp"
-#include "libchar/fit/detail/events/step_scan.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/spectrum/fft.hpp"

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/log/topics/topic_choice.hpp"
 #include "libchar/log/topics/topic_rows.hpp"
 #include "tests/support/shared.hpp"
 

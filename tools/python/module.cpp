@@ -23,8 +23,7 @@
 #include "libchar/report/replay/replay_markdown.hpp"
 #include "libchar/report/report_files.hpp"
 #include "libchar/scene/recorded_scene.hpp"
-#include "libchar/scene/text/fault_text.hpp"
-#include "libchar/scene/text/signal_text.hpp"
+#include "libchar/scene/text/typed_text.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar_python {

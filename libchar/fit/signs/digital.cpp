@@ -207,28 +207,32 @@ void join(DigitalSums& sums, const DigitalSums& later) {
   runs.spacing2 += more.spacing2;
 }
 
+template <class Archive, class Sums>
+static void digital_layout(Archive& at, Sums& sums) {
+  auto& runs = sums.runs;
+  at.group("the digital faults of a channel",
+           sums.present,
+           sums.low.value,
+           sums.low.count,
+           sums.high.value,
+           sums.high.count,
+           runs.runs,
+           runs.samples,
+           runs.repeats,
+           runs.spacing,
+           runs.spacing2);
+  at(runs.of_length);
+}
+
 void write_state(const DigitalSums& sums, StateWriter& to) {
-  const ValueRuns& runs = sums.runs;
-  to.reals(std::array{sums.present,
-                      sums.low.value,
-                      sums.low.count,
-                      sums.high.value,
-                      sums.high.count,
-                      runs.runs,
-                      runs.samples,
-                      runs.repeats,
-                      runs.spacing,
-                      runs.spacing2});
-  to.reals(runs.of_length);
+  digital_layout(to, sums);
 }
 
 DigitalSums read_digital_sums(StateReader& from) {
-  const std::vector<double> all = from.reals();
-  if (all.size() != 10) from.refuse("the digital faults of a channel");
-  DigitalSums sums{all[0], {all[1], all[2]}, {all[3], all[4]}, {}};
-  sums.runs = {from.reals(), all[5], all[6], all[7], all[8], all[9]};
-  if (!sums.runs.of_length.empty() && sums.runs.of_length.size() != kLongestHold + 1)
-    from.refuse("the runs of a channel");
+  DigitalSums sums;
+  digital_layout(from, sums);
+  const std::size_t lengths = sums.runs.of_length.size();
+  if (lengths != 0 && lengths != kLongestHold + 1) from.refuse("the runs of a channel");
   return sums;
 }
 

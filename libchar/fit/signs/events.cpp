@@ -1,7 +1,7 @@
 // Steps, warm-up and ramp by generalised least squares in the metric of the noise that is fitted beside them. In each round the best
 // place of each kind joins the model by itself, the noise is fitted again without it, and its likelihood ratio
 //   LR = 2 ln L(with it, noise refitted) - 2 ln L(without, noise refitted)
-// is held against the square of the threshold that the look-elsewhere effect of its kind sets (look_elsewhere.hpp): the kind with
+// is held against the square of the threshold that the look-elsewhere effect of its kind sets (scans.hpp): the kind with
 // the largest LR - threshold^2 is taken, if that is positive. Kinds within kNotTold of it are named: steps, warm-ups and ramps
 // imitate one another. Then the round is repeated on what is left.
 #include "libchar/fit/signs/events.hpp"
@@ -9,18 +9,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
 #include "libchar/core/text/readable.hpp"
-#include "libchar/fit/detail/events/drift_scan.hpp"
-#include "libchar/fit/detail/events/look_elsewhere.hpp"
 #include "libchar/fit/detail/events/regression.hpp"
+#include "libchar/fit/detail/events/scans.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
-#include "libchar/fit/detail/events/shapes.hpp"
-#include "libchar/fit/detail/events/step_scan.hpp"
-#include "libchar/fit/detail/events/telegraph.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {

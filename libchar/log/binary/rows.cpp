@@ -8,7 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/log/binary/file_hash.hpp"
+#include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/stamps.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/odd_values.hpp"

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/allan/confidence.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/text/readable.hpp"

@@ -5,7 +5,7 @@
 //   needed:   2 (lnL(terms + process) - lnL(terms)) > kNeeded, with all offered terms in both, so that the terms alone are a special
 //             case (sigma = 0, and walk as tau -> infinity): passed by at most 1 % of records of their kind (docs/theory/fit.md)
 //   rival:    not needed, but white noise and the process alone are more likely than all offered terms by kRival: passed by 5 % of walks
-// Flicker and walk then stay or go by the same elimination as ever (decisions.cpp). Intervals: tau by profile likelihood; sigma by the
+// Flicker and walk then stay or go by the same elimination as ever (coefficients.cpp). Intervals: tau by profile likelihood; sigma by the
 // union, over the taus in that interval, of its own intervals given tau, each as wide as the likelihood has left.
 #include "libchar/fit/detail/curve/gauss_markov_fit.hpp"
 
@@ -21,7 +21,7 @@
 #include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
-#include "libchar/fit/detail/record/gauss_markov_means.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
 
 namespace libchar {
 namespace {
