@@ -174,18 +174,54 @@ std::string targets_that_take(bool ExportTakes::*option) {
   return names;
 }
 
+namespace {
+
+/// Programs that take the numbers of a target under other keys.
+struct Alike {
+  std::string_view program, target, keys;
+};
+constexpr Alike kAlike[] = {
+    {"lio-sam",
+     "gtsam",
+     "imuAccNoise, imuGyrNoise, imuAccBiasN, imuGyrBiasN are the roots of its covariances"},
+    {"lvi-sam",
+     "gtsam",
+     "acc_n, gyr_n, acc_w, gyr_w of its LIO part are the roots of its covariances"},
+    {"okvis", "kalibr", "sigma_a_c, sigma_g_c, sigma_aw_c, sigma_gw_c are its four densities"},
+    {"msckf",
+     "kalibr",
+     "noise/acc, noise/gyro, noise/acc_bias, noise/gyro_bias are its four densities"},
+    {"maplab", "kalibr", "its sigmas are the same four densities"},
+    {"rovio", "gtsam", "PredictionNoise takes its covariances"},
+    {"fast-lio", "ros", "acc_cov and gyr_cov are variances of a sample"},
+    {"robot_localization", "ros", "it reads the covariances of the messages"},
+    {"isaac", "pegasus", "the same densities and correlation time"},
+    {"ekf2", "px4", "its parameters"},
+    {"ardupilot", "px4", "the parameters of EK3 stand beside those of EKF2"},
+};
+
+std::string alike_hint(std::string_view name) {
+  for (const Alike& one : kAlike)
+    if (one.program == name)
+      return fmt::format("{} takes what {} takes: {}", one.program, one.target, one.keys);
+  return "";
+}
+
+}  // namespace
+
 const ExportTarget& find_export_target(std::string_view name) {
   for (const ExportTarget& target : export_targets())
     if (target.name == name) return target;
   std::vector<std::string> names;
   for (const ExportTarget& target : export_targets()) names.emplace_back(target.name);
   const auto near = nearest(name, names);
+  const std::string hint = alike_hint(name);
   throw Error({ErrorKind::usage,
                "E0592",
                "`target`",
                fmt::format("no such target; targets are {}", fmt::join(names, ", ")),
                std::string(name),
-               did_you_mean(near, "`export_targets` lists them")});
+               hint.empty() ? did_you_mean(near, "`export_targets` lists them") : hint});
 }
 
 Export export_models(const ExportTarget& target,

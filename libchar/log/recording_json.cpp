@@ -51,7 +51,7 @@ const Fields<FileWarning>& warning_fields() {
                                            field<&T::warning, &Warning::code>("code"),
                                            field<&T::warning, &Warning::sentence>("message"),
                                            field<&T::warning, &Warning::count>("count"),
-                                           field<&T::warning, &Warning::where, &FoundAt::rows>(
+                                           field<&T::warning, &Warning::where, &Finding::Place::rows>(
                                                "where", {.meaning = "the first three"}),
                                        }));
   return rows;
