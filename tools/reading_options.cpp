@@ -195,10 +195,20 @@ void add_reading_options_without_channel(VerbOptions& verb,
   add_channel_values(verb, options);
   add_time_options(verb, options);
   add_dialect_options(verb, options);
+  verb.add_parsed(
+          "--missing",
+          "VALUE,…",
+          [&options](const std::string& text) {
+            std::istringstream marks(text);
+            for (std::string mark; std::getline(marks, mark, ',');)
+              options.missing.marks.push_back(libchar::parse_number(mark));
+          },
+          "values that mean \"no reading\" in the log, such as -999 (default: none)")
+      .group("Reading");
   add_accepting_flag(verb,
                      "--overflow",
                      "nan",
-                     options.overflow_as_missing,
+                     options.missing.overflow,
                      "nan: a number out of range counts as missing (default: error)");
   add_accepting_flag(verb,
                      "--repeated-header",
@@ -257,7 +267,9 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   word("--header", options.header, usual.header);
   word("--encoding", options.encoding, usual.encoding);
   if (options.skip_rows != 0) flags += fmt::format(" --skip-rows {}", options.skip_rows);
-  if (options.overflow_as_missing) flags += " --overflow nan";
+  for (const double mark : options.missing.marks)
+    flags += fmt::format(" --missing={}", libchar::shortest(mark));
+  if (options.missing.overflow) flags += " --overflow nan";
   if (options.skip_repeated_header) flags += " --repeated-header skip";
   return flags;
 }

@@ -15,8 +15,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/kernels/lag_sum.hpp"
-#include "libchar/allan/detail/term_covariance.hpp"
 #include "libchar/core/error.hpp"
 
 namespace libchar {

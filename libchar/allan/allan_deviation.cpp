@@ -27,7 +27,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/anchored_phase.hpp"

@@ -128,17 +128,15 @@ void hand_up_pair(AllanSums& sums, std::size_t index) {
   }
 }
 
-void write_end(const LevelEnd& end, StateWriter& to) {
+void end_layout(StateWriter& to, const LevelEnd& end) {
   to.reals(std::span(end.value).first(end.count));
   to.reals(std::span(end.absent).first(end.count));
 }
 
-LevelEnd read_end(StateReader& from) {
+void end_layout(StateReader& from, LevelEnd& end) {
   const std::vector<double> value = from.reals(), absent = from.reals();
   if (value.size() > kReach || absent.size() != value.size()) from.refuse("the end of a level");
-  LevelEnd end;
   for (std::size_t i = 0; i < value.size(); ++i) end.push_back(value[i], absent[i]);
-  return end;
 }
 
 /// Terms of sums of 2^k values start at some of those that have as many behind them; others would
@@ -224,46 +222,29 @@ AllanCurve octave_curve(const AllanSums& sums, double dt_s) {
   return curve;
 }
 
+template <class Archive, class Sums>
+static void allan_layout(Archive& at, Sums& sums) {
+  at(sums.samples, sums.missing, sums.origin);
+  at.list(sums.levels, 8, [&](auto& level) {
+    at(level.count);
+    end_layout(at, level.head);
+    end_layout(at, level.tail);
+    for (auto& terms : level.terms)
+      at(terms.squares, terms.shortfall, terms.imbalance, terms.terms, terms.starts);
+  });
+}
+
 void write_state(const AllanSums& sums, StateWriter& to) {
-  to.number(sums.samples);
-  to.number(sums.missing);
-  to.real(sums.origin);
-  to.number(sums.levels.size());
-  for (const AllanLevel& level : sums.levels) {
-    to.number(level.count);
-    write_end(level.head, to);
-    write_end(level.tail, to);
-    for (const PresentTerms& terms : level.terms) {
-      to.wide(terms.squares);
-      to.wide(terms.shortfall);
-      to.wide(terms.imbalance);
-      to.number(terms.terms);
-      to.number(terms.starts);
-    }
-  }
+  allan_layout(to, sums);
 }
 
 AllanSums read_allan_sums(StateReader& from) {
   AllanSums sums;
-  sums.samples = from.number();
-  sums.missing = from.number();
-  sums.origin = from.real();
-  sums.levels.resize(from.count(8));
-  for (AllanLevel& level : sums.levels) {
-    level.count = from.number();
-    level.head = read_end(from);
-    level.tail = read_end(from);
-    for (PresentTerms& terms : level.terms) {
-      terms.squares = from.wide();
-      terms.shortfall = from.wide();
-      terms.imbalance = from.wide();
-      terms.terms = from.number();
-      terms.starts = from.number();
-    }
+  allan_layout(from, sums);
+  for (const AllanLevel& level : sums.levels)
     if (level.head.count != std::min<std::uint64_t>(level.count, kReach) ||
         level.tail.count != level.head.count || !possible(level))
       from.refuse("a level of the pyramid");
-  }
   // What follows is joined by these numbers.
   if (sums.levels.size() != static_cast<std::size_t>(std::bit_width(sums.samples)) ||
       sums.missing > sums.samples)

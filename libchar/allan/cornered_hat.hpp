@@ -1,7 +1,6 @@
 #pragma once
 // Deviations of single devices from their differences: the three-cornered hat, and the same for any number of them.
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

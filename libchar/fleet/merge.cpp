@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <unordered_map>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/shell_word.hpp"

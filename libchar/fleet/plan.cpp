@@ -10,7 +10,6 @@
 #include <fstream>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -24,7 +23,7 @@
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/fleet/detail/log_digest.hpp"
+#include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/fleet/detail/unit_cost.hpp"
 #include "libchar/log/channel_names.hpp"

@@ -12,7 +12,6 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/process/version.hpp"
-#include "libchar/fleet/detail/log_digest.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/report/report_files.hpp"

@@ -36,11 +36,8 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <concepts>
-#include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
-#include <string_view>
 
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/warnings.hpp"

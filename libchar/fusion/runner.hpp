@@ -4,7 +4,6 @@
 // each).
 
 #include <cassert>
-#include <memory>
 #include <optional>
 
 #include "libchar/fusion/algorithm.hpp"

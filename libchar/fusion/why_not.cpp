@@ -1,6 +1,5 @@
 #include "libchar/fusion/why_not.hpp"
 
-#include <cmath>
 #include <string>
 
 #include "libchar/core/numeric/dense.hpp"

@@ -13,16 +13,17 @@ struct LogFormat {
   std::string_view name;   ///< the word for it in options: "csv"
   std::string_view title;  ///< as tables of formats list it: "CSV"
   std::string_view brief;  ///< its files in a help text; "" = the first suffix
-  std::vector<std::string_view>
-      suffixes;                ///< files of this format by their name, whatever they hold
+  /// Files of this format by their name, whatever they hold.
+  std::vector<std::string_view> suffixes = {};
   std::string_view otherwise;  ///< what else is taken for this format; "" = what looks like it
-  std::string_view names, units, rate, start;  ///< does a file hold them? "yes", "no", or where
-  std::vector<std::string_view>
-      written_suffixes;      ///< written as this format unless told otherwise; none = never written
+  /// Does a file hold them? "yes", "no", or where.
+  std::string_view names = "yes", units = "yes", rate = "by stamps", start = "yes";
+  /// Written as this format unless told otherwise; none = never written.
+  std::vector<std::string_view> written_suffixes = {};
   bool writes_names = true;  ///< a file that is written says names and units of its channels
   bool writes_rate = false;  ///< … and its sampling rate
-  bool writes_stamps =
-      false;  ///< … and has a column of stamps, unless `WriteOptions::time_column` is off
+  /// … and has a column of stamps, unless `WriteOptions::time_column` is off.
+  bool writes_stamps = false;
   bool topics = false;          ///< may hold several streams, each with a clock of its own
   bool rows_at_places = false;  ///< a row can be read without those in front of it
   bool from_pipes = false;      ///< can be read from standard input and named pipes

@@ -104,7 +104,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
     if (format.certain != nullptr && format.certain(front)) return format;
   if (const Format* format = format_by_suffix(path)) return *format;
   for (const Format& format : formats())
-    if (format.sniff(path, front)) return format;
+    if (format.sniff != nullptr && format.sniff(path, front)) return format;
   const auto words = format_words();
   throw Error({ErrorKind::input,
                "E0102",
@@ -367,6 +367,23 @@ void judge_values(const Watch& watch,
 
 namespace {
 
+/// The next rows, with what is marked as missing missing.
+bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, Warnings& warnings) {
+  if (!source.next(block, warnings)) return false;
+  for (const double mark : options.missing.marks)
+    for (std::size_t c = 0; c < block.columns.size(); ++c) {
+      const auto end = block.columns[c].begin() + static_cast<std::ptrdiff_t>(block.rows);
+      const auto count = std::count(block.columns[c].begin(), end, mark);
+      if (count == 0) continue;
+      std::replace(block.columns[c].begin(), end, mark, kMissing);
+      warnings.add("missing_value",
+                   "values that mean \"no reading\", as was said: missing",
+                   source.info().channels[c].name,
+                   static_cast<std::uint64_t>(count));
+    }
+  return true;
+}
+
 /// The head with the names and units that the channels have in the end.
 LogInfo named_info(const RowSource& source, const ReadOptions& options) {
   LogInfo info = source.info();
@@ -417,7 +434,7 @@ LogInfo read_rows(const std::string& path,
   Watch watch(sink, whole);
   TimeGrid grid(*source, whole, watch, warnings);
   RowBlock block;
-  while (source->next(block, warnings)) grid.push(block);
+  while (next_rows(*source, options, block, warnings)) grid.push(block);
   LogInfo known;
   grid.finish(known);
   source->finish(warnings);
@@ -444,7 +461,7 @@ LogInfo read_log(const std::string& log,
   RowBlock block;
   const std::string what = "reading " + path;
   bool more = true;
-  while (more && source->next(block, warnings)) {
+  while (more && next_rows(*source, options, block, warnings)) {
     more = grid.push(block);
     const std::uint64_t total = source->bytes_total();
     progress.update(
@@ -492,9 +509,12 @@ Recording read_recording(const std::string& path, const ReadOptions& options, Pr
   Recording recording;
   recording.info = read_log(path, options, collector, progress);
   recording.samples = std::move(collector.samples);
-  for (std::size_t c = 0; c < recording.info.channels.size(); ++c)
-    quality_warnings(
-        recording.info.channels[c], collector.meters[c].finish(), recording.info.warnings);
+  for (std::size_t c = 0; c < recording.info.channels.size(); ++c) {
+    const ChannelQuality quality = collector.meters[c].finish();
+    for (const Finding& one : quality.findings)
+      if (one.code == "quantization_limited")
+        recording.info.warnings.add(one.code, one.sentence, recording.info.channels[c].name);
+  }
   return recording;
 }
 
@@ -506,7 +526,7 @@ StampedRows read_stamped_rows(const std::string& log,
   StampedRows out;
   Warnings warnings;
   RowBlock block;
-  while (source->next(block, warnings)) {
+  while (next_rows(*source, options, block, warnings)) {
     const auto rows = static_cast<std::ptrdiff_t>(block.rows);
     out.samples.resize(block.columns.size());
     for (std::size_t c = 0; c < block.columns.size(); ++c)

@@ -14,6 +14,13 @@
 namespace libchar {
 
 struct ReadOptions {
+  /// What is no measurement, though it is a number.
+  struct Missing {
+    std::vector<double> marks;  ///< values that stand for "no reading" in the log: -999, 65535
+    bool overflow =
+        false;  ///< so does a number out of a double's range, instead of ending the reading
+  };
+
   std::vector<std::string>
       channels;  ///< names (or c0, c1…) to read; empty = all. Unknown name: Error(usage) naming the nearest
   std::string
@@ -47,8 +54,7 @@ struct ReadOptions {
   std::string header = "auto";     ///< "auto", "yes", "no"
   std::string encoding = "auto";   ///< "auto", "utf-8", "latin1", "cp1252" (CSV header only)
   std::uint64_t skip_rows = 0;     ///< lines to skip before the header (CSV)
-  bool overflow_as_missing =
-      false;  ///< a number out of double's range counts as missing instead of ending the reading
+  Missing missing;
   bool skip_repeated_header =
       false;  ///< header lines inside the data (concatenated logs) are counted and skipped
   std::size_t block_bytes =

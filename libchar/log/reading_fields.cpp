@@ -98,7 +98,10 @@ Fields<ReadOptions> time_fields() {
                                  .range = kPositive,
                                  .meaning = "first instant not used",
                                  .otherwise = "the end"}),
-      field<&ReadOptions::overflow_as_missing>(
+      field<&ReadOptions::missing, &ReadOptions::Missing::marks>(
+          "missing",
+          {.meaning = "values that mean \"no reading\", such as -999", .otherwise = "none"}),
+      field<&ReadOptions::missing, &ReadOptions::Missing::overflow>(
           "overflow_as_missing",
           {.meaning = "a number out of a double's range counts as missing", .otherwise = "false"}),
       field<&ReadOptions::skip_repeated_header>(

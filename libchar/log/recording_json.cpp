@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/log/binary/sidecar.hpp"
@@ -45,14 +46,14 @@ const Fields<InputFile>& input_fields() {
 
 const Fields<FileWarning>& warning_fields() {
   using T = FileWarning;
-  static const Fields<T> rows =
-      joined(Fields<T>{field<&T::file>("file")},
-             always(Fields<T>{
-                 field<&T::warning, &Warning::code>("code"),
-                 field<&T::warning, &Warning::message>("message"),
-                 field<&T::warning, &Warning::count>("count"),
-                 field<&T::warning, &Warning::places>("where", {.meaning = "the first three"}),
-             }));
+  static const Fields<T> rows = joined(Fields<T>{field<&T::file>("file")},
+                                       always(Fields<T>{
+                                           field<&T::warning, &Warning::code>("code"),
+                                           field<&T::warning, &Warning::sentence>("message"),
+                                           field<&T::warning, &Warning::count>("count"),
+                                           field<&T::warning, &Warning::where, &Finding::Place::rows>(
+                                               "where", {.meaning = "the first three"}),
+                                       }));
   return rows;
 }
 
@@ -141,7 +142,7 @@ const Fields<DescribedChannel>& described_channel_fields() {
       field<&T::quality, &Q::difference_kurtosis>("difference_kurtosis", {.known = kVaries}),
       field<&T::quality, &Q::float32>("float32"),
       field<&T::quality, &Q::float32_step>("float32_step"),
-      field<&T::quality, &Q::suggestions>("suggestions"),
+      list_of<&T::quality, &Q::findings>("findings", finding_fields()),
   });
   return rows;
 }

@@ -1,9 +1,7 @@
 #pragma once
 // Writing logs, streaming, in the formats of formats.hpp. What is written reads back to the same bits.
 
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

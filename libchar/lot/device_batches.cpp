@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <unordered_map>
 
 #include "libchar/core/text/pattern.hpp"
-#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

@@ -3,17 +3,252 @@
 #include "libchar/lot/fleet_lot.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/lot/detail/fleet_data.hpp"
-#include "libchar/lot/detail/fleet_verdict.hpp"
-#include "libchar/lot/detail/statistics/lot_outliers.hpp"
-#include "libchar/lot/detail/statistics/lot_statistics.hpp"
-#include "libchar/lot/detail/worst_devices.hpp"
+#include "libchar/lot/detail/lot_statistics.hpp"
 
 namespace libchar {
 namespace {
+
+// Devices that the others of their group do not let expect.
+// Every quantity of every channel is a search of its own (core/random_effects.hpp); with m of them
+// each has the share 1/m of the probability of a false alarm (Bonferroni).
+
+FleetOutlier outlier_of(const Fleet& fleet,
+                        const Statistic& s,
+                        const Outlier& found,
+                        double others) {
+  const LotPlace place = place_of(*s.group, s.values.member[found.index]);
+  const RecordedChannel& channel = fleet.records[place.recording].channels[place.channel];
+  FleetOutlier out;
+  out.recording = place.recording;
+  out.channel = place.channel;
+  out.p = found.p;
+  out.deviation = found.deviation;
+  out.value = s.values.y[found.index];
+  const std::string what = channel.name + ": " + title_of(s.lot.quantity);
+  if (!in_logarithm(s.lot.quantity)) {
+    out.sentence = fmt::format("{} {} {}, {} standard deviations from the others ({}).",
+                               what,
+                               number_text(out.value),
+                               s.lot.unit,
+                               number_text(std::abs(found.deviation), 2),
+                               probability_text(found.p));
+    return out;
+  }
+  out.ratio = std::exp(out.value - others);
+  out.value = std::exp(out.value);
+  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).",
+                             what,
+                             number_text(out.value),
+                             s.lot.unit,
+                             number_text(out.ratio, 3),
+                             probability_text(found.p));
+  return out;
+}
+
+void add_outliers(const Fleet& fleet, double probability, Statistic& s) {
+  std::vector<Outlier> found = find_outliers(s.values.y, s.values.v, probability);
+  if (found.empty()) return;
+  std::vector<bool> outside(s.values.y.size());
+  for (const Outlier& one : found) outside[one.index] = true;
+  std::vector<double> y, v;
+  for (std::size_t i = 0; i < s.values.y.size(); ++i) {
+    if (outside[i]) continue;
+    y.push_back(s.values.y[i]);
+    v.push_back(s.values.v[i]);
+  }
+  const double others = random_effects(y, v).mean;
+  std::stable_sort(found.begin(), found.end(), [](const Outlier& a, const Outlier& b) {
+    return std::abs(a.deviation) > std::abs(b.deviation);
+  });
+  for (const Outlier& one : found) s.lot.outliers.push_back(outlier_of(fleet, s, one, others));
+}
+
+// Fills `searched` and `outliers` of each quantity. `probability`: of naming any device where none
+// stands out.
+void search_outliers(const Fleet& fleet, double probability, std::vector<Statistic>& statistics) {
+  std::size_t count = 0;
+  for (Statistic& s : statistics) {
+    const LotCounts& counts = s.lot.counts;
+    s.lot.searched = shows_outliers(*s.group) && s.lot.effects &&
+                     counts.counted >= kFewestForOutliers &&
+                     enough_count(counts.counted, counts.members);
+    count += s.lot.searched;
+  }
+  tbb::parallel_for(std::size_t{0}, statistics.size(), [&](std::size_t i) {
+    if (statistics[i].lot.searched)
+      add_outliers(fleet, probability / static_cast<double>(count), statistics[i]);
+  });
+}
+
+// The devices of a fleet by what is wrong with them.
+
+/// Why a device is among the worst.
+struct Reason {
+  double p = 1, deviation = 0;
+  std::string sentence;
+};
+
+using Reasons = std::unordered_map<std::size_t, std::vector<Reason>>;
+
+Reasons reasons_of(const Fleet& fleet, const std::vector<Statistic>& statistics) {
+  Reasons out;
+  for (const Statistic& s : statistics) {
+    for (const FleetOutlier& o : s.lot.outliers)
+      out[fleet.sorted.device_of[o.recording]].push_back({o.p, std::abs(o.deviation), o.sentence});
+    for (const LimitFailure& f : s.limit.failures)
+      out[s.group->devices[f.member]].push_back({f.p, f.deviation, f.sentence});
+  }
+  return out;
+}
+
+bool worse(double p, double deviation, double other_p, double other_deviation) {
+  return p != other_p ? p < other_p : deviation > other_deviation;
+}
+
+// Those that stand out or fail, the worst first, at most `most`.
+void add_worst(const Fleet& fleet,
+               const std::vector<Statistic>& statistics,
+               std::size_t most,
+               FleetLot& out) {
+  Reasons reasons = reasons_of(fleet, statistics);
+  for (auto& [device, all] : reasons) {
+    std::stable_sort(all.begin(), all.end(), [](const Reason& a, const Reason& b) {
+      return worse(a.p, a.deviation, b.p, b.deviation);
+    });
+    WorstDevice one{fleet.sorted.first[device], all[0].p, all[0].deviation, {}};
+    for (const Reason& reason : all) one.reasons.push_back(reason.sentence);
+    out.worst.push_back(std::move(one));
+  }
+  std::vector<std::size_t> rank(fleet.records.size());
+  for (std::size_t i = 0; i < fleet.sorted.order.size(); ++i) rank[fleet.sorted.order[i]] = i;
+  std::sort(out.worst.begin(), out.worst.end(), [&](const WorstDevice& a, const WorstDevice& b) {
+    if (a.p != b.p || a.deviation != b.deviation) return worse(a.p, a.deviation, b.p, b.deviation);
+    return rank[a.recording] < rank[b.recording];
+  });
+  if (out.worst.size() > most) out.worst.resize(most);
+}
+
+// Counts and marks the devices that stand out, fail, keep their limits.
+void mark_devices(const Fleet& fleet, const std::vector<Statistic>& statistics, FleetLot& out) {
+  std::vector<bool> outlying(out.devices), failing(out.devices), open(out.devices),
+      held(out.devices);
+  for (const Statistic& s : statistics) {
+    for (const FleetOutlier& o : s.lot.outliers)
+      if (!s.lot.of_kind) outlying[fleet.sorted.device_of[o.recording]] = true;
+    for (std::size_t m = 0; m < s.limit.status.size(); ++m) {
+      const std::size_t device = s.group->devices[m];
+      held[device] = true;
+      if (s.limit.status[m] == LimitStatus::fail) failing[device] = true;
+      if (s.limit.status[m] == LimitStatus::not_decided) open[device] = true;
+    }
+  }
+  for (std::size_t d = 0; d < out.devices; ++d) {
+    out.outlying += outlying[d];
+    out.failing += failing[d];
+    out.open += !failing[d] && open[d];
+    out.keeping += held[d] && !failing[d] && !open[d];
+  }
+  out.stands_out.resize(fleet.records.size());
+  out.fails.resize(fleet.records.size());
+  for (std::size_t r = 0; r < fleet.records.size(); ++r) {
+    const std::size_t device = fleet.sorted.device_of[r];
+    if (device == kNoDevice) continue;
+    out.stands_out[r] = outlying[device];
+    out.fails[r] = failing[device];
+  }
+}
+
+// A fleet in a paragraph.
+
+/// Quantities of channels in which batches differ, each with its share of 5 %.
+std::string batch_sentence(const FleetLot& lot) {
+  const auto tested = [](const QuantityLot& q) { return !q.of_kind && q.batch_difference; };
+  const auto tests = std::count_if(lot.quantities.begin(), lot.quantities.end(), tested);
+  std::vector<const QuantityLot*> found;
+  for (const QuantityLot& q : lot.quantities)
+    if (tested(q) && q.batch_difference->p < 0.05 / static_cast<double>(tests)) found.push_back(&q);
+  if (tests == 0) return "";
+  if (found.empty()) return " No difference between batches is resolved.";
+  std::stable_sort(found.begin(), found.end(), [](const QuantityLot* a, const QuantityLot* b) {
+    return a->batch_difference->p < b->batch_difference->p;
+  });
+  constexpr std::size_t kShown = 3;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(kShown, found.size()); ++i)
+    list += fmt::format(
+        "{}{} of {}", i == 0 ? "" : ", ", title_of(found[i]->quantity), found[i]->group);
+  if (found.size() > kShown) list += fmt::format(" and {} more", found.size() - kShown);
+  return fmt::format(" Batches differ: {}.", list);
+}
+
+/// ": 1 recording could not be characterized, of 3 recordings the result is not there yet"
+std::string without_result(const FleetLot& lot) {
+  std::string out;
+  if (!lot.failed.empty())
+    out += fmt::format(": {} could not be characterized", plural(lot.failed.size(), "recording"));
+  if (!lot.awaited.empty())
+    out += fmt::format("{} of {} the result is not there yet",
+                       out.empty() ? ":" : ",",
+                       plural(lot.awaited.size(), "recording"));
+  return out;
+}
+
+std::string stand_out(std::size_t count, const char* what) {
+  return count == 1 ? fmt::format(" 1 {} stands out from its kind.", what)
+                    : fmt::format(" {} {}s stand out from their kind.", count, what);
+}
+
+/// That nobody stands out is a finding only where somebody could.
+std::string outlying_sentence(const FleetLot& lot) {
+  std::set<std::pair<std::size_t, std::size_t>> channels;  // of single devices
+  bool any = false, searched = false, axes = true;
+  for (const QuantityLot& q : lot.quantities) {
+    any = any || q.counts.counted > 0;
+    searched = searched || q.searched;
+    axes = axes && (q.of_kind || !q.searched);
+    if (q.of_kind)
+      for (const FleetOutlier& o : q.outliers) channels.emplace(o.recording, o.channel);
+  }
+  if (!any) return " There is no result to judge.";
+  if (!searched)
+    return fmt::format(" Too few of a kind to say which stands out: at least {} are needed.",
+                       kFewestForOutliers);
+  std::string out = lot.outlying > 0 ? stand_out(lot.outlying, "device") : "";
+  if (!channels.empty()) out += stand_out(channels.size(), "channel");
+  if (!out.empty()) return out;
+  return axes ? " No channel stands out from its kind." : " No device stands out from its kind.";
+}
+
+std::string fleet_verdict(const FleetLot& lot) {
+  std::string out = plural(lot.devices, "device");
+  if (lot.types.size() > 1) out += fmt::format(" of {} types", lot.types.size());
+  if (lot.batches.size() > 1) out += fmt::format(" in {} batches", lot.batches.size());
+  if (lot.order.size() != lot.devices)
+    out += fmt::format(", {}", plural(lot.order.size(), "recording"));
+  out += without_result(lot) + "." + outlying_sentence(lot);
+  const std::size_t held = lot.failing + lot.open + lot.keeping;
+  if (held > 0)
+    out += fmt::format(" Of {} held against limits, {} {}, {} not decided, {} all of them.",
+                       plural(held, "device"),
+                       lot.failing,
+                       lot.failing == 1 ? "fails one" : "fail one or more",
+                       lot.open,
+                       lot.keeping == 1 ? "1 keeps" : fmt::format("{} keep", lot.keeping));
+  return out + batch_sentence(lot);
+}
 
 /// What was mended in the logs does not get lost in the number of them.
 std::vector<std::string> warnings_note(std::span<const DeviceRecord> records,

@@ -8,7 +8,6 @@
 // Result and order of everything in it depend on what the records say, not on the order in which they come.
 
 #include <array>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>

@@ -15,7 +15,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "libchar/core/error.hpp"
 #include "libchar/spectrum/detail/segment_choice.hpp"

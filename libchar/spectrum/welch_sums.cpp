@@ -110,35 +110,19 @@ void WelchParts::join(WelchSums& sums, const WelchSums& later) {
   sums = std::move(both);
 }
 
+template <class Archive, class Sums>
+static void welch_layout(Archive& at, Sums& sums) {
+  at(sums.samples, sums.used, sums.dropped, sums.power, sums.pairs, sums.begin, sums.end);
+  at(sums.head, sums.tail, sums.first, sums.moves, sums.moves_little);
+}
+
 void WelchParts::write_state(const WelchSums& sums, StateWriter& to) {
-  to.number(sums.samples);
-  to.number(sums.used);
-  to.number(sums.dropped);
-  to.reals(sums.power);
-  to.numbers(sums.pairs);
-  to.flags(sums.begin);
-  to.flags(sums.end);
-  to.reals(sums.head);
-  to.reals(sums.tail);
-  to.real(sums.first);
-  to.flag(sums.moves);
-  to.flag(sums.moves_little);
+  welch_layout(to, sums);
 }
 
 WelchSums WelchParts::read_state(StateReader& from) const {
   WelchSums sums;
-  sums.samples = from.number();
-  sums.used = from.number();
-  sums.dropped = from.number();
-  sums.power = from.reals();
-  sums.pairs = from.numbers();
-  sums.begin = from.flags();
-  sums.end = from.flags();
-  sums.head = from.reals();
-  sums.tail = from.reals();
-  sums.first = from.real();
-  sums.moves = from.flag();
-  sums.moves_little = from.flag();
+  welch_layout(from, sums);
   const Layout& layout = state_->layout;
   const std::size_t lags = (layout.segment - 1) / layout.hop;
   const bool none = sums.samples == 0 && sums.used == 0 && sums.dropped == 0 &&

@@ -9,7 +9,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/allan/gauss_markov_curves.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
-#include "libchar/fit/detail/record/gauss_markov_means.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 
@@ -48,8 +48,8 @@ bool in_model(const NoiseFit& fit) {
 }
 
 bool says(const NoiseFit& fit, const std::string& words) {
-  for (const std::string& sentence : fit.sentences)
-    if (sentence.find(words) != std::string::npos) return true;
+  for (const Finding& one : fit.findings)
+    if (one.sentence.find(words) != std::string::npos) return true;
   return false;
 }
 

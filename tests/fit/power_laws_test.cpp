@@ -8,7 +8,6 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
-#include "libchar/fit/detail/record/flicker_phase_means.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "tests/support/noise.hpp"

@@ -1,6 +1,4 @@
 // Intervals of terms that are reported because they passed a threshold.
-#include "libchar/fit/detail/curve/selection.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

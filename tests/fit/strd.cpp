@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "libchar/core/process/silent_glog.hpp"
-#include "libchar/fit/detail/curve/solver_settings.hpp"
+#include "libchar/fit/detail/curve/polish.hpp"
 
 namespace test {
 namespace {

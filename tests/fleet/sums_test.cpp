@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "libchar/core/error.hpp"
-#include "libchar/fleet/detail/log_digest.hpp"
+#include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/status.hpp"

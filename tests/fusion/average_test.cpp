@@ -3,8 +3,7 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 
-#include "libchar/fusion/algorithms/inverse_variance.hpp"
-#include "libchar/fusion/algorithms/mean.hpp"
+#include "libchar/fusion/algorithms/averages.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/algebra.hpp"
 

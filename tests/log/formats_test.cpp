@@ -56,7 +56,7 @@ TEST_CASE(
       CHECK(suffixes.insert(suffix).second);
     for (const std::string_view suffix : format.about.written_suffixes)
       CHECK(format_by_suffix("x" + std::string(suffix)) == &format);
-    CHECK(format.sniff != nullptr);
+    CHECK((format.sniff != nullptr || format.certain != nullptr));
     CHECK((format.open != nullptr) != (format.topics != nullptr));
     CHECK(format.about.topics == (format.topics != nullptr));
     CHECK((format.write == nullptr) == format.about.written_suffixes.empty());

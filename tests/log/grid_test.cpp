@@ -43,7 +43,7 @@ TEST_CASE("missing rows become missing samples, never values") {
   CHECK(r.info.time.missing_samples == 8);
   CHECK(r.info.time.rate_hz == Approx(200).epsilon(1e-12));
   REQUIRE(count(r, "gap") == 2);
-  CHECK(r.info.warnings.find("gap")->places[0] == "line 102");
+  CHECK(r.info.warnings.find("gap")->where.rows[0] == "line 102");
   CHECK(std::isnan(r.samples[0][100]));
   CHECK(r.samples[0][99] == 99);
   CHECK(r.samples[0][101] == 100);
@@ -58,7 +58,7 @@ TEST_CASE("the scatter of the stamps is said in per cent of the interval") {
     t.push_back(10000 * i + (i % 3 == 1 ? 3000 : i % 3 == 2 ? -3000 : 0));
   const Recording r = read_text(log_of(t));
   REQUIRE(count(r, "jitter") == 1);
-  CHECK_THAT(r.info.warnings.find("jitter")->message, Catch::Contains("scatter by 44 %"));
+  CHECK_THAT(r.info.warnings.find("jitter")->sentence, Catch::Contains("scatter by 44 %"));
 }
 
 TEST_CASE("the rate is exact in spite of jitter, drifts of the first rows and outliers") {
@@ -91,7 +91,7 @@ TEST_CASE("doubled stamps: the first row is kept") {
   const Recording r = read_text(log_of(t));
   CHECK(r.info.samples == 50);
   REQUIRE(count(r, "duplicate_timestamp") == 2);
-  CHECK(r.info.warnings.find("duplicate_timestamp")->places[0] == "line 3");
+  CHECK(r.info.warnings.find("duplicate_timestamp")->where.rows[0] == "line 3");
   CHECK(r.samples[0][0] == 0);
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("rows that step back are dropped and counted, a restarted clock is an 
   std::swap(t[100], t[101]);
   const Recording r = read_text(log_of(t));
   REQUIRE(count(r, "backward_timestamp") == 1);
-  CHECK(r.info.warnings.find("backward_timestamp")->places[0] == "line 103");
+  CHECK(r.info.warnings.find("backward_timestamp")->where.rows[0] == "line 103");
   auto twice = even(300, 1000);
   const auto again = even(300, 1000);
   twice.insert(twice.end(), again.begin(), again.end());
@@ -164,7 +164,7 @@ TEST_CASE("two rates that gaps do not explain: rows over time, and both are said
   CHECK(r.info.time.gaps == 0);
   CHECK(r.info.time.rate_hz == Approx(1 / 0.011).epsilon(1e-9));
   REQUIRE(count(r, "uneven_sampling") == 1);
-  CHECK_THAT(r.info.warnings.find("uneven_sampling")->message,
+  CHECK_THAT(r.info.warnings.find("uneven_sampling")->sentence,
              Catch::Contains("keep 100 Hz, rows over time are 90.909 Hz"));
 }
 
@@ -328,7 +328,7 @@ TEST_CASE("what stamps need does not depend on where blocks of the file begin") 
     for (std::size_t k = 0; k < r.info.warnings.list().size(); ++k) {
       CHECK(r.info.warnings.list()[k].code == whole.info.warnings.list()[k].code);
       CHECK(r.info.warnings.list()[k].count == whole.info.warnings.list()[k].count);
-      CHECK(r.info.warnings.list()[k].places == whole.info.warnings.list()[k].places);
+      CHECK(r.info.warnings.list()[k].where.rows == whole.info.warnings.list()[k].where.rows);
     }
     for (std::size_t i = 0; i < r.samples[0].size(); ++i) {
       const double a = r.samples[0][i], b = whole.samples[0][i];

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
-#include "libchar/log/topics/topic_choice.hpp"
 #include "libchar/log/topics/topic_rows.hpp"
 #include "tests/support/shared.hpp"
 
@@ -197,7 +196,7 @@ TEST_CASE("rows of a topic: its stamps, in blocks of any size, with what is no s
   CHECK(log.columns[0][0] == 1);
   CHECK(std::isnan(log.columns[0][1]));
   CHECK(std::isnan(log.columns[0][2]));
-  CHECK(log.warnings.find("missing_cell")->places[0] == "row 1 of /pose, field x");
+  CHECK(log.warnings.find("missing_cell")->where.rows[0] == "row 1 of /pose, field x");
   CHECK(log.warnings.find("infinite_value")->count == 1);
   CHECK(log.rows->info().time.column == "header.stamp");
   CHECK(log.rows->info().topic == "/pose");

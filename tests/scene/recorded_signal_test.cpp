@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "libchar/core/error.hpp"
-#include "libchar/scene/text/signal_text.hpp"
+#include "libchar/scene/text/typed_text.hpp"
 #include "tests/support/run.hpp"
 
 using namespace libchar;

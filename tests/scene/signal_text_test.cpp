@@ -1,8 +1,7 @@
-#include "libchar/scene/text/signal_text.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/scene/text/typed_text.hpp"
 
 using namespace libchar;
 using Catch::Contains;

@@ -94,8 +94,8 @@ Characterization characterized(Session& session,
   report_warnings(session, result.log);
   for (const ChannelResult& c : result.channels) {
     const Judgement judgement = judge(c);
-    outcome.any_fit = outcome.any_fit || !judgement.has(ObjectionKind::no_fit);
-    outcome.agrees = outcome.agrees && !judgement.has(ObjectionKind::simulation);
+    outcome.any_fit = outcome.any_fit || !judgement.has("no_fit");
+    outcome.agrees = outcome.agrees && !judgement.has("simulation_disagrees");
   }
   return result;
 }

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "libchar/allan/detail/family.hpp"
-#include "libchar/core/numeric/lanes.hpp"
 
 namespace libchar {
 namespace {

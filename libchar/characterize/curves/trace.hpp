@@ -3,9 +3,10 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "libchar/core/numeric/state_archive.hpp"
+#include "libchar/core/numeric/halving.hpp"
 
 namespace libchar {
 
@@ -19,30 +20,23 @@ struct Trace {
 /// Takes a record in pieces of any size. Blocks have a power of two of samples, so that 400 to 800 hold any record longer than that.
 class TraceMeter {
  public:
-  void push(std::span<const double> samples);
+  void push(std::span<const double> samples) { all_.push(samples); }
   Trace finish() const;
-  std::uint64_t samples() const { return blocks_.size() * length_ + filled_; }
-
-  /// The samples that `later` has seen follow directly: the same as if they had been pushed here. They must be at most the largest power of two that
-  /// divides the number of those before: else std::logic_error.
-  void join(TraceMeter later);
-  void write_state(StateWriter& to) const;
-  void read_state(StateReader& from);
+  std::uint64_t samples() const { return all_.samples(); }
+  void join(TraceMeter later) { all_.join(std::move(later.all_)); }
+  void write_state(StateWriter& to) const { all_.write_state(to); }
+  void read_state(StateReader& from) { all_.read_state(from, "the trace of a channel"); }
 
  private:
   struct Block {
     double low = __builtin_inf(), high = -__builtin_inf();
     std::uint64_t missing = 0;
-    void take(const double* samples, std::size_t count);
+    void take(std::span<const double> samples);
     void join(const Block& later);
+    static void layout(auto& at, auto& block) { at(block.low, block.high, block.missing); }
   };
-  void close();
-  void halve();
 
-  std::uint64_t length_ = 1;  ///< of a block
-  std::uint64_t filled_ = 0;  ///< samples in the block that is open
-  Block open_;
-  std::vector<Block> blocks_;
+  detail::Halving<Block, 800> all_;
 };
 
 }  // namespace libchar

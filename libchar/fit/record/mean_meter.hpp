@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/numeric/state_archive.hpp"
+#include "libchar/core/numeric/halving.hpp"
 #include "libchar/fit/signs/event_series.hpp"
 
 namespace libchar {
@@ -16,7 +16,7 @@ class MeanMeter {
  public:
   MeanMeter() = default;
   /// `per_mean`: samples in a mean at first, a power of two.
-  explicit MeanMeter(std::uint64_t per_mean) : per_mean_(per_mean) {}
+  explicit MeanMeter(std::uint64_t per_mean) : all_{.length = per_mean} {}
   void push(std::span<const double> samples);
   /// The samples that `later` has seen follow directly. What is here must be a whole number of its
   /// means.
@@ -26,8 +26,8 @@ class MeanMeter {
 
   /// NaN: none of its samples is present. A last mean of fewer samples is not among them.
   std::vector<double> means() const;
-  std::uint64_t per_mean() const { return per_mean_; }
-  std::uint64_t samples() const { return means_.size() * per_mean_ + open_samples_; }
+  std::uint64_t per_mean() const { return all_.length; }
+  std::uint64_t samples() const { return all_.samples(); }
   std::uint64_t missing() const;
   /// As `event_series` makes it of the samples. Throws Error(numeric) for fewer than 64 means.
   EventSeries series(double rate_hz) const;
@@ -36,18 +36,16 @@ class MeanMeter {
   void read_state(StateReader& from);
 
  private:
+  static constexpr std::size_t kMostKept = std::size_t{1} << 16U;
   struct Mean {
     double value = 0;
     std::uint64_t present = 0;
+    void take(std::span<const double> samples);
     void join(const Mean& later);
+    static void layout(auto& at, auto& mean) { at(mean.value, mean.present); }
   };
-  void close();
-  void halve();
 
-  std::uint64_t per_mean_ = 1;
-  std::vector<Mean> means_;
-  Mean open_;  ///< of the samples that fill no mean yet
-  std::uint64_t open_samples_ = 0;
+  detail::Halving<Mean, kMostKept> all_;
 };
 
 }  // namespace libchar

@@ -1,13 +1,113 @@
 #include "libchar/fit/record/power_bins.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
 
+#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/present.hpp"
-#include "libchar/fit/detail/band/line_clip.hpp"
-#include "libchar/fit/detail/record/pooled_power.hpp"
 #include "libchar/fit/detail/record/record_powers.hpp"
 
 namespace libchar {
+namespace {
+
+// Spectral lines in squared transform coefficients, and what to leave out because of them.
+// A coefficient is a line when it exceeds the local floor by what noise does once in 7e7
+// coefficients (32 x the floor for a single transform). The floor is the median of its
+// neighbourhood over the median of chi-square. A sine of power E (in floors) leaks E/(pi d)^2 into
+// the coefficient at distance d whatever its phase, so that the neighbourhood goes as well, out to
+// where the leak is 1 % of the floor: d = sqrt(10 E).
+
+struct LineClip {
+  std::vector<char> clipped;  ///< one flag a coefficient; empty when none is clipped
+  std::uint64_t count = 0;    ///< coefficients left out, times nothing: not weighted by pooling
+};
+
+constexpr std::uint64_t kLowest = 32;
+constexpr double kFalseAlarm = 1.54e-8;  // P(chi^2_1 > 32)
+
+/// Floor of the coefficients: medians over stretches of an eighth of k, 64 to 2048 coefficients long, joined by straight
+/// lines in log-log, so that the slope of flicker and walk within a stretch is not taken for a line.
+class LocalFloor {
+ public:
+  LocalFloor(const std::vector<double>& mean, std::uint64_t first, double chi_median) {
+    std::vector<double> part;
+    for (std::size_t lo = 0; lo < mean.size();) {
+      const std::size_t width = std::clamp<std::size_t>((lo + first) / 8, 64, 2048);
+      std::size_t hi = std::min(mean.size(), lo + width);
+      if (mean.size() - hi < 64) hi = mean.size();
+      part.assign(mean.begin() + static_cast<std::ptrdiff_t>(lo),
+                  mean.begin() + static_cast<std::ptrdiff_t>(hi));
+      log_k_.push_back(
+          0.5 * std::log(static_cast<double>(lo + first) * static_cast<double>(hi - 1 + first)));
+      log_floor_.push_back(
+          std::log(std::max(median_in_place(part, Middle::upper), 1e-300) / chi_median));
+      lo = hi;
+    }
+  }
+  /// Lines between two medians; the first and the last go on to the ends.
+  std::size_t pieces() const { return std::max<std::size_t>(1, log_k_.size() - 1); }
+  /// First coefficient of the piece after this one.
+  std::uint64_t end_of(std::size_t piece) const {
+    return static_cast<std::uint64_t>(std::exp(log_k_[piece + 1])) + 1;
+  }
+  double at(std::size_t piece, std::uint64_t k) const {
+    const std::size_t next = std::min(piece + 1, log_k_.size() - 1);
+    const double span = log_k_[next] - log_k_[piece];
+    const double share = span > 0 ? (std::log(static_cast<double>(k)) - log_k_[piece]) / span : 0;
+    return std::exp(log_floor_[piece] + share * (log_floor_[next] - log_floor_[piece]));
+  }
+
+ private:
+  std::vector<double> log_k_, log_floor_;
+};
+
+/// Marks a line and what it leaks into.
+void clip_around(std::size_t i, double excess, std::uint64_t first, std::vector<char>& clipped) {
+  const double reach = std::min({std::sqrt(10 * excess),
+                                 static_cast<double>(first + i) / 4,
+                                 static_cast<double>(clipped.size()) / 32});
+  const auto distance = static_cast<std::size_t>(std::max(1.0, reach));
+  const std::size_t from =
+      std::max<std::size_t>(i < distance ? 0 : i - distance, first < kLowest ? kLowest - first : 0);
+  const std::size_t to = std::min(clipped.size() - 1, i + distance);
+  for (std::size_t j = from; j <= to; ++j) clipped[j] = 1;
+}
+
+// `mean[i]` is the mean square of coefficient first + i over `pooled` transforms. Coefficients
+// below 32 are never clipped.
+LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::uint64_t pooled) {
+  const double dof = static_cast<double>(pooled);
+  // Never nearer than 1.5: the floor itself is only that good where the spectrum bends.
+  const double limit = std::max(1.5, chi_square_upper_quantile(kFalseAlarm, dof) / dof);
+  const LocalFloor floor(mean, first, chi_square_quantile(0.5, dof) / dof);
+  LineClip clip;
+  const std::uint64_t end = first + mean.size();
+  std::uint64_t k = std::max(first, kLowest);
+  for (std::size_t piece = 0; piece < floor.pieces(); ++piece) {
+    const std::uint64_t next =
+        piece + 1 < floor.pieces() ? std::min(end, floor.end_of(piece)) : end;
+    if (k >= next) continue;
+    // A power law has its least value at an end: only what exceeds that is looked at closely.
+    const double least = std::min(floor.at(piece, k), floor.at(piece, next - 1)) * (1 - 1e-9);
+    for (; k < next; ++k) {
+      const double power = mean[k - first];
+      if (!(power > limit * least)) continue;
+      // The median of a short stretch is itself uncertain: five of its standard deviations on top.
+      const double width = std::clamp(static_cast<double>(k) / 8, 64.0, 2048.0);
+      const double margin = 1 + 5 * std::sqrt(2 / dof / width), here = floor.at(piece, k);
+      if (!(power > limit * margin * here)) continue;
+      if (clip.clipped.empty()) clip.clipped.assign(mean.size(), 0);
+      clip_around(k - first, here > 0 ? power / here : 1e6, first, clip.clipped);
+    }
+  }
+  for (const char flag : clip.clipped) clip.count += flag != 0 ? 1 : 0;
+  return clip;
+}
+
+}  // namespace
 
 std::vector<PooledPower> whole_powers(std::span<const double> record) {
   std::vector<PooledPower> powers;

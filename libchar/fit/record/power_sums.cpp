@@ -26,13 +26,12 @@
 //
 // Events (steps, a warm-up, a ramp) are e_t with e known: the series of means loses its mean e, and
 // the pooled powers of blocks lose sum e_k² of the transforms of e over the places of the blocks,
-// with a cross term 2 n_k e_k left that has no mean (pooled_power.cpp). Where samples are missing,
+// with a cross term 2 n_k e_k left that has no mean (record_powers.cpp). Where samples are missing,
 // places are those of a record whose missing ones are spread evenly over the run.
 #include "libchar/fit/record/power_sums.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -371,21 +370,19 @@ std::vector<PooledPower> powers_of(PowerSums sums, std::span<const Event> events
   return powers;
 }
 
+template <class Archive, class Runs>
+static void runs_layout(Archive& at, Runs& runs) {
+  at.list(runs, 56, [&](auto& run) {
+    at(run.gap, run.samples, run.shift, run.means, run.slow, run.at, run.rows);
+  });
+}
+
 void write_state(const PowerSums& sums, StateWriter& to) {
   to.number(sums.rows);
   write_state(sums.blocks, to);
   for (const PooledSums& piece : sums.pieces) write_state(piece, to);
   write_state(sums.means, to);
-  to.number(sums.runs.size());
-  for (const PowerRun& run : sums.runs) {
-    to.number(run.gap);
-    to.number(run.samples);
-    to.real(run.shift);
-    to.reals(run.means);
-    to.reals(run.slow);
-    to.number(run.at);
-    to.number(run.rows);
-  }
+  runs_layout(to, sums.runs);
   to.reals(sums.tail);
 }
 
@@ -396,15 +393,8 @@ PowerSums read_power_sums(StateReader& from) {
   for (std::size_t piece = 0; piece < kPieceLengths; ++piece)
     sums.pieces[piece] = read_pooled_sums(piece_length(piece), from);
   sums.means = read_mean_powers(kSamplesAMean, PowerPart::kBlock, from);
-  sums.runs.resize(from.count(56));
-  for (PowerRun& run : sums.runs) {
-    run.gap = from.number();
-    run.samples = from.number();
-    run.shift = from.real();
-    run.means = from.reals();
-    run.slow = from.reals();
-    run.at = from.number();
-    run.rows = from.number();
+  runs_layout(from, sums.runs);
+  for (const PowerRun& run : sums.runs) {
     if (run.rows < run.samples || run.at > sums.rows || run.rows > sums.rows - run.at)
       from.refuse("the place of a run");
     if (run.means.size() + run.slow.size() * kMeansPerSlow > run.samples / kSamplesAMean)

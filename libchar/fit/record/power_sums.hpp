@@ -10,7 +10,6 @@
 
 #include "libchar/core/numeric/state_archive.hpp"
 #include "libchar/core/process/shared_blocks.hpp"
-#include "libchar/fit/record/mean_powers.hpp"
 #include "libchar/fit/record/pooled_sums.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fit/signs/event.hpp"

@@ -1,21 +1,56 @@
 // A record becomes bins and a fit: as one exact transform where it fits into a leaf, by the sums
 // over its leaves where it does not. Which of both depends on its length only, so that whoever has
 // the samples, and however many at a time, finds the same bits.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/bridge.hpp"
-#include "libchar/fit/detail/band/heavy_tails.hpp"
 #include "libchar/fit/detail/record/record_means.hpp"
+#include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
 
 namespace libchar {
 namespace {
+
+// The interval of white noise whose samples are not Gaussian.
+// Whittle's likelihood takes periodogram ordinates for independent. Of white noise of excess kurtosis g they share 2 + g instead of 2:
+// with theta = N^2 and n samples
+//   var(ln theta) = var of the likelihood + g / n
+// (D. R. Brillinger, "Time Series: Data Analysis and Theory", 1981, theorem 5.10.1:
+// covariance of spectral averages = Gaussian part + fourth cumulant / n). Differences of white noise have half its excess kurtosis. Slower
+// terms have weights that do not see white noise, so that theirs stays.
+
+// Widens the interval and covariance of the white noise by what heavy tails add, and says so; nothing where the kurtosis of first
+// differences is below `spike_alarm(samples)`, as of Gaussian noise. `samples` without the missing ones.
+void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit& fit) {
+  if (!(difference_kurtosis > spike_alarm(samples))) return;
+  constexpr auto kWhite = static_cast<std::size_t>(Term::white);
+  Coefficient& white = fit.term[kWhite];
+  double& variance = fit.covariance[kWhite][kWhite];
+  if (!white.value || !(variance > 0)) return;
+  const double more = 2 * (difference_kurtosis - 3) / static_cast<double>(samples);
+  const double wider = std::sqrt((variance + more) / variance);
+  variance += more;
+  white.relative_sd *= wider;
+  white.ci95.high = *white.value * std::pow(white.ci95.high / *white.value, wider);
+  white.ci95.low = *white.value * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider);
+  if (wider > 1.05)
+    fit.findings.push_back(finding(
+        "heavy_tails",
+        fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences "
+                    "{} instead of 3): the interval of N is {} times as wide for it.",
+                    brief_text(difference_kurtosis),
+                    brief_text(wider, 2))));
+}
 
 constexpr std::uint64_t kMeansOfPoint = 8;  ///< from which on terms of a pyramid start often enough
 constexpr double kMostOfEvents = 0.2;       ///< share of a point's variance
@@ -85,6 +120,16 @@ bool has_step(std::span<const Event> events) {
   });
 }
 
+void report_stationarity(NoiseFit& fit) {
+  const Stationarity& found = fit.stationarity;
+  if (found.steady) return;
+  Finding changed = finding(
+      "not_stationary", found.sentence, "the noise is not the same throughout the recording");
+  if (!found.noticeable) changed.severity = Severity::note;
+  changed.where.time_s = {found.smallest_s, found.largest_s};
+  fit.findings.push_back(std::move(changed));
+}
+
 NoiseFit fit_whole(std::span<const double> record,
                    double rate_hz,
                    const AllanCurve* allan,
@@ -123,7 +168,7 @@ NoiseFit fit_whole(std::span<const double> record,
   add_spike_answer(despiked.answer, fit);
   if (options.remedies && options.stationarity) {
     fit.stationarity = test_stationarity(data, rate_hz, fit);
-    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+    report_stationarity(fit);
   }
   return fit;
 }
@@ -158,7 +203,7 @@ NoiseFit fit_sums(RecordSums sums,
   add_spike_answer(answer, fit);
   if (options.remedies && options.stationarity) {
     fit.stationarity = test_stationarity(used, events, rate_hz, fit);
-    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+    report_stationarity(fit);
   }
   return fit;
 }

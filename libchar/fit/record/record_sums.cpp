@@ -1,14 +1,128 @@
 #include "libchar/fit/record/record_sums.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/fit/detail/band/bridge.hpp"
 #include "libchar/fit/remedies.hpp"
 
 namespace libchar {
+
+// A leaf is a binary tree of pieces of 2^14 samples, whose Allan sums are joined upwards: each node
+// gives the octaves that fit it sixteen times and its halves do not. As a record grows, the
+// shortest pieces become pairs, whose variance is the mean of both.
+
+namespace {
+
+constexpr std::size_t kMostPieces = 512;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Octaves of a node that are not those of its halves.
+void take_octaves(const AllanSums& sums, std::uint64_t samples, PieceVariances& pieces) {
+  const std::size_t last = static_cast<std::size_t>(std::bit_width(samples / kWindowsOfPiece)) - 1;
+  const std::size_t first = samples == PieceVariances::kShortest ? 0 : last;
+  if (pieces.variance.size() <= last) pieces.variance.resize(last + 1);
+  std::vector<double> found(last + 1, kNone);
+  try {
+    for (const AllanPoint& point : octave_curve(sums, 1).points)
+      if (const auto j = static_cast<std::size_t>(std::bit_width(point.m)) - 1; j <= last)
+        found[j] = point.deviation * point.deviation;
+  } catch (const Error& error) {  // all of it is missing
+    if (error.problem().kind != ErrorKind::numeric) throw;
+  }
+  for (std::size_t j = first; j <= last; ++j) pieces.variance[j].push_back(found[j]);
+}
+
+double mean_of_two(double a, double b) {
+  if (std::isnan(a)) return b;
+  return std::isnan(b) ? a : a + 0.5 * (b - a);
+}
+
+void double_shortest(PieceVariances& pieces) {
+  for (std::size_t j = 0; j < pieces.variance.size(); ++j) {
+    if (pieces.length(j) > pieces.shortest) break;
+    std::vector<double>& v = pieces.variance[j];
+    for (std::size_t i = 0; i + 1 < v.size(); i += 2) v[i / 2] = mean_of_two(v[i], v[i + 1]);
+    v.resize(v.size() / 2);
+  }
+  pieces.shortest *= 2;
+}
+
+}  // namespace
+
+std::uint64_t PieceVariances::length(std::size_t octave) const {
+  return std::max(shortest, kWindowsOfPiece << octave);
+}
+
+AllanSums sums_of_pieces(std::span<const double> leaf, PieceVariances& pieces) {
+  struct Node {
+    std::uint64_t samples = 0;
+    AllanSums sums;
+  };
+  std::vector<Node> nodes;
+  const auto join_last = [&] {
+    const Node later = std::move(nodes.back());
+    nodes.pop_back();
+    nodes.back().samples += later.samples;
+    libchar::join(nodes.back().sums, later.sums);
+  };
+  for (std::span<const double> rest = leaf; !rest.empty();) {
+    const std::span<const double> piece =
+        rest.first(std::min<std::size_t>(rest.size(), PieceVariances::kShortest));
+    rest = rest.subspan(piece.size());
+    AllanPyramid pyramid;
+    pyramid.push(piece);
+    nodes.push_back({piece.size(), std::move(pyramid).sums()});
+    if (piece.size() == PieceVariances::kShortest)
+      take_octaves(nodes.back().sums, piece.size(), pieces);
+    while (nodes.size() > 1 && nodes[nodes.size() - 2].samples == nodes.back().samples &&
+           std::has_single_bit(nodes.back().samples / PieceVariances::kShortest)) {
+      join_last();
+      take_octaves(nodes.back().sums, nodes.back().samples, pieces);
+    }
+  }
+  while (nodes.size() > 1) join_last();
+  return nodes.empty() ? AllanSums{} : std::move(nodes[0].sums);
+}
+
+void join(PieceVariances& pieces, const PieceVariances& later_as_it_is) {
+  PieceVariances later = later_as_it_is;
+  while (pieces.shortest < later.shortest) double_shortest(pieces);
+  while (later.shortest < pieces.shortest) double_shortest(later);
+  if (pieces.variance.size() < later.variance.size()) pieces.variance.resize(later.variance.size());
+  for (std::size_t j = 0; j < later.variance.size(); ++j)
+    pieces.variance[j].insert(
+        pieces.variance[j].end(), later.variance[j].begin(), later.variance[j].end());
+  while (!pieces.variance.empty() && pieces.variance[0].size() > kMostPieces)
+    double_shortest(pieces);
+}
+
+template <class Archive, class Pieces>
+static void pieces_layout(Archive& at, Pieces& pieces) {
+  at(pieces.shortest);
+  at.list(pieces.variance, 8, [&](auto& variances) { at(variances); });
+}
+
+void write_state(const PieceVariances& pieces, StateWriter& to) {
+  pieces_layout(to, pieces);
+}
+
+PieceVariances read_piece_variances(StateReader& from) {
+  PieceVariances pieces;
+  pieces_layout(from, pieces);
+  if (!std::has_single_bit(pieces.shortest) || pieces.shortest < PieceVariances::kShortest ||
+      pieces.variance.size() > 48)
+    from.refuse("the pieces of a channel");
+  return pieces;
+}
+
 namespace {
 
 constexpr std::uint64_t kSettledHeight = 9;  ///< of nodes whose means are settled: 2^29 samples
@@ -53,6 +167,11 @@ FittedSums read_fitted(StateReader& from) {
   sums.means.read_state(from);
   sums.pieces = read_piece_variances(from);
   return sums;
+}
+
+template <class Archive, class Count>
+void spikes_layout(Archive& at, Count& n) {
+  at(n.samples, n.left_out, n.spikes, n.shoulder, n.steps, n.crowded, n.log_size);
 }
 
 struct RecordStage {
@@ -128,26 +247,14 @@ void write_state(const RecordSums& sums, StateWriter& to) {
   write_fitted(sums.plain, to);
   to.flag(sums.cleaned.has_value());
   if (sums.cleaned) write_fitted(*sums.cleaned, to);
-  const SpikeCount& count = sums.spikes;
-  for (const std::uint64_t n :
-       {count.samples, count.left_out, count.spikes, count.shoulder, count.steps, count.crowded})
-    to.number(n);
-  to.real(count.log_size);
+  spikes_layout(to, sums.spikes);
 }
 
 RecordSums read_record_sums(StateReader& from) {
   RecordSums sums;
   sums.plain = read_fitted(from);
   if (from.flag()) sums.cleaned = read_fitted(from);
-  SpikeCount& count = sums.spikes;
-  for (std::uint64_t* n : {&count.samples,
-                           &count.left_out,
-                           &count.spikes,
-                           &count.shoulder,
-                           &count.steps,
-                           &count.crowded})
-    *n = from.number();
-  count.log_size = from.real();
+  spikes_layout(from, sums.spikes);
   return sums;
 }
 

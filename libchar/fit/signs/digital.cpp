@@ -126,27 +126,30 @@ std::string with_unit(double value, std::string_view unit) {
 
 void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view unit) {
   for (const Rail& rail : faults.rails)
-    faults.sentences.push_back(
-        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
-                    "comes out too small.",
-                    percent_text(rail.share),
-                    rail.high ? "largest" : "smallest",
-                    with_unit(rail.value, unit)));
+    faults.findings.push_back(
+        finding("rail",
+                fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
+                            "comes out too small.",
+                            percent_text(rail.share),
+                            rail.high ? "largest" : "smallest",
+                            with_unit(rail.value, unit))));
   if (faults.held)
-    faults.sentences.push_back(
+    faults.findings.push_back(finding(
+        "held_values",
         fmt::format("Each value is recorded {} times on average: the sensor gives {} Hz where the "
                     "log has {} Hz.",
                     number_text(faults.held->times, 3),
                     number_text(faults.held->sensor_rate_hz, 4),
-                    number_text(rate_hz, 4)));
+                    number_text(rate_hz, 4))));
   if (faults.staircase)
-    faults.sentences.push_back(
+    faults.findings.push_back(finding(
+        "staircase",
         fmt::format("The noise between samples, {}{}, is below the converter's step of {}: {}",
                     faults.staircase->bounded ? "at most " : "",
                     with_unit(faults.staircase->noise, unit),
                     with_unit(faults.staircase->step, unit),
                     faults.staircase->bounded ? "what is measured is the rounding."
-                                              : "the rounding is part of what is measured."));
+                                              : "the rounding is part of what is measured.")));
 }
 
 }  // namespace
@@ -204,28 +207,32 @@ void join(DigitalSums& sums, const DigitalSums& later) {
   runs.spacing2 += more.spacing2;
 }
 
+template <class Archive, class Sums>
+static void digital_layout(Archive& at, Sums& sums) {
+  auto& runs = sums.runs;
+  at.group("the digital faults of a channel",
+           sums.present,
+           sums.low.value,
+           sums.low.count,
+           sums.high.value,
+           sums.high.count,
+           runs.runs,
+           runs.samples,
+           runs.repeats,
+           runs.spacing,
+           runs.spacing2);
+  at(runs.of_length);
+}
+
 void write_state(const DigitalSums& sums, StateWriter& to) {
-  const ValueRuns& runs = sums.runs;
-  to.reals(std::array{sums.present,
-                      sums.low.value,
-                      sums.low.count,
-                      sums.high.value,
-                      sums.high.count,
-                      runs.runs,
-                      runs.samples,
-                      runs.repeats,
-                      runs.spacing,
-                      runs.spacing2});
-  to.reals(runs.of_length);
+  digital_layout(to, sums);
 }
 
 DigitalSums read_digital_sums(StateReader& from) {
-  const std::vector<double> all = from.reals();
-  if (all.size() != 10) from.refuse("the digital faults of a channel");
-  DigitalSums sums{all[0], {all[1], all[2]}, {all[3], all[4]}, {}};
-  sums.runs = {from.reals(), all[5], all[6], all[7], all[8], all[9]};
-  if (!sums.runs.of_length.empty() && sums.runs.of_length.size() != kLongestHold + 1)
-    from.refuse("the runs of a channel");
+  DigitalSums sums;
+  digital_layout(from, sums);
+  const std::size_t lengths = sums.runs.of_length.size();
+  if (lengths != 0 && lengths != kLongestHold + 1) from.refuse("the runs of a channel");
   return sums;
 }
 
@@ -279,10 +286,12 @@ void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
     if (white.value) white.ci95 = {0, std::max(white.ci95.high, most)};
     if (white.upper95) white.upper95 = std::max(*white.upper95, most);
   }
-  fit.sentences.push_back(fmt::format(
-      "No coefficient can be trusted, however well the curves agree: they are those of the "
-      "{}, not of the noise.",
-      rounding ? "converter's rounding" : "clipped samples"));
+  fit.findings.push_back(finding(
+      "digital_misfit",
+      fmt::format(
+          "No coefficient can be trusted, however well the curves agree: they are those of the "
+          "{}, not of the noise.",
+          rounding ? "converter's rounding" : "clipped samples")));
 }
 
 }  // namespace libchar

@@ -1,7 +1,6 @@
 #pragma once
 // Is the noise the same throughout a record?
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>

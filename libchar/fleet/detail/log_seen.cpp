@@ -4,10 +4,19 @@
 #include <sys/stat.h>
 
 #include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 
 namespace libchar {
+
+std::string digest_of_log(const std::string& path) {
+  constexpr std::size_t kPieceOfLog = std::size_t{1} << 20U;
+  Sha256 hash;
+  for_pieces_of_file(path, kPieceOfLog, [&](std::string_view piece) { hash.update(piece); });
+  return hash.finish();
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -13,6 +13,9 @@
 
 namespace libchar {
 
+/// SHA-256 of the whole file, 64 hexadecimal digits. Throws Error(input).
+std::string digest_of_log(const std::string& path);
+
 /// As the file stands now: path, size and time of change. Nothing where it cannot be looked at.
 std::optional<std::string> log_as_seen(const std::string& log);
 

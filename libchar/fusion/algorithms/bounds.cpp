@@ -1,7 +1,6 @@
 #include "libchar/fusion/algorithms/bounds.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/variances/general_mean.hpp"
+#include "libchar/fusion/detail/variances/generalized_least_squares.hpp"
 
 namespace libchar::fusion {
 

@@ -1,7 +1,6 @@
 #include "libchar/fusion/algorithms/kalman_takens_published.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace libchar::fusion {
 

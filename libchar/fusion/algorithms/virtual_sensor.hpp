@@ -1,6 +1,6 @@
 #pragma once
 // One sensor made of several whose drifts are known as models: a Kalman filter of the biases alone.
-//   y = H x + C b + e,  R = diag(white),  b: states of first order (bias_states.hpp)
+//   y = H x + C b + e,  R = diag(white),  b: states of first order (bias_filter.hpp)
 // Nothing is assumed of the input x (its variance is infinite at every instant), so only what the samples
 // tell beside any input - the differences between sensors - is filtered (Bayard & Ploen 2003; Xue et al.
 // 2012). With P the prediction covariance of b and S = C P C' + R:

@@ -136,18 +136,6 @@ std::unique_ptr<ArrayCursor> Hdf5File::open(std::size_t array,
   return std::make_unique<Hdf5Cursor>(*this, array, rows, columns);
 }
 
-std::unique_ptr<TopicReader> open_hdf5(const std::string& path, const ReadOptions&) {
-  return array_tables(open_hdf5_file(path, "HDF5"), path);
-}
-
-bool certain_hdf5(std::string_view first_bytes) {
-  return first_bytes.starts_with(kHdf5Magic);
-}
-
-bool sniff_hdf5(const std::string&, std::string_view first_bytes) {
-  return certain_hdf5(first_bytes);
-}
-
 }  // namespace
 
 std::unique_ptr<ArrayContainer> open_hdf5_file(const std::string& path, const std::string& kind) {
@@ -166,14 +154,14 @@ Format hdf5_format() {
   row.about.name = "hdf5";
   row.about.title = "HDF5";
   row.about.suffixes = {".h5", ".hdf5"};
-  row.about.names = "yes";
   row.about.units = "attributes";
   row.about.rate = "by a time dataset, or an attribute";
   row.about.start = "by a time dataset";
   row.about.topics = true;
-  row.certain = certain_hdf5;
-  row.sniff = sniff_hdf5;
-  row.topics = open_hdf5;
+  row.certain = [](std::string_view first_bytes) { return first_bytes.starts_with(kHdf5Magic); };
+  row.topics = [](const std::string& path, const ReadOptions&) {
+    return array_tables(open_hdf5_file(path, "HDF5"), path);
+  };
   return row;
 }
 

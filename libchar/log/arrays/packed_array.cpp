@@ -3,10 +3,151 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/crc32.hpp"
+#include "libchar_have.hpp"
+#if LIBCHAR_HAVE_ZLIB
+#include <zlib.h>
+#endif
 
 namespace libchar {
+
+void PackedBytes::refuse(std::string what) const {
+  throw Error({ErrorKind::input,
+               "E0462",
+               fmt::format("{}, {} (byte {})",
+                           file_.path(),
+                           name_,
+                           stretch_.first_byte + std::min(packed_, stretch_.packed_bytes)),
+               std::move(what),
+               "",
+               "copy the file again"});
+}
+
+#if LIBCHAR_HAVE_ZLIB
+
+bool zlib_is_here() {
+  return true;
+}
+
+namespace {
+constexpr std::size_t kPackedPiece = std::size_t{1} << 16U;
+}
+
+struct PackedBytes::Inflater {
+  z_stream stream{};
+  bool ended = false;
+  std::vector<std::byte> in = std::vector<std::byte>(kPackedPiece);
+  explicit Inflater(Packing packing) {
+    if (::inflateInit2(&stream, packing == Packing::zlib ? MAX_WBITS : -MAX_WBITS) != Z_OK)
+      throw std::bad_alloc();
+  }
+  ~Inflater() { ::inflateEnd(&stream); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+};
+
+PackedBytes::PackedBytes(const BinaryFile& file, PackedStretch stretch, std::string name)
+    : file_(file), stretch_(stretch), name_(std::move(name)) {
+  if (stretch_.packing != Packing::stored) inflater_ = std::make_unique<Inflater>(stretch_.packing);
+}
+
+bool PackedBytes::inflate_into(std::span<std::byte> to, bool may_end) {
+  z_stream& z = inflater_->stream;
+  z.next_out = reinterpret_cast<Bytef*>(to.data());
+  z.avail_out = static_cast<uInt>(to.size());
+  while (z.avail_out > 0) {
+    if (inflater_->ended && may_end) return false;
+    if (inflater_->ended) refuse("ends before its data do");
+    if (z.avail_in == 0) {
+      const auto n = static_cast<std::size_t>(
+          std::min<std::uint64_t>(inflater_->in.size(), stretch_.packed_bytes - packed_));
+      if (n == 0) refuse("ends before its data do");
+      file_.read(stretch_.first_byte + packed_, std::span(inflater_->in).first(n));
+      packed_ += n;
+      z.next_in = reinterpret_cast<Bytef*>(inflater_->in.data());
+      z.avail_in = static_cast<uInt>(n);
+    }
+    const int status = ::inflate(&z, Z_NO_FLUSH);
+    inflater_->ended = status == Z_STREAM_END;
+    if (status == Z_MEM_ERROR) throw std::bad_alloc();
+    if (status != Z_OK && status != Z_STREAM_END)
+      refuse(fmt::format("compressed data are broken ({})",
+                         z.msg != nullptr ? z.msg : "no deflate stream"));
+  }
+  return true;
+}
+
+void PackedBytes::drain() {
+  if (!inflater_) return;
+  std::vector<std::byte> away(kPackedPiece);
+  while (inflate_into(away, true)) {
+  }
+}
+
+#else  // without zlib
+
+bool zlib_is_here() {
+  return false;
+}
+
+struct PackedBytes::Inflater {};
+
+PackedBytes::PackedBytes(const BinaryFile& file, PackedStretch stretch, std::string name)
+    : file_(file), stretch_(stretch), name_(std::move(name)) {
+  if (stretch_.packing == Packing::stored) return;
+  throw Error({ErrorKind::input,
+               "E0467",
+               fmt::format("{}, {}", file_.path(), name_),
+               "is compressed, and this program was built without zlib",
+               "",
+               "install zlib1g-dev and build again, or save it without compression"});
+}
+
+bool PackedBytes::inflate_into(std::span<std::byte>, bool) {
+  return false;
+}
+
+void PackedBytes::drain() {}
+
+#endif
+
+PackedBytes::~PackedBytes() = default;
+
+void PackedBytes::read(std::span<std::byte> to) {
+  if (to.size() > stretch_.bytes - position_) refuse("is shorter than what it describes");
+  constexpr std::size_t kMost = std::size_t{1} << 30U;  // zlib counts in 32 bits
+  for (std::size_t done = 0; done < to.size();) {
+    const std::span<std::byte> piece = to.subspan(done, std::min(kMost, to.size() - done));
+    if (inflater_) {
+      inflate_into(piece, false);
+    } else {
+      file_.read(stretch_.first_byte + position_ + done, piece);
+      packed_ += piece.size();
+    }
+    crc_ = crc32_of(piece, crc_);
+    done += piece.size();
+  }
+  position_ += to.size();
+}
+
+void PackedBytes::skip(std::uint64_t count) {
+  if (count > stretch_.bytes - position_) refuse("is shorter than what it describes");
+  if (!inflater_) {
+    position_ += count;
+    packed_ += count;
+    return;
+  }
+  std::vector<std::byte> away(static_cast<std::size_t>(std::min<std::uint64_t>(count, 1U << 16U)));
+  while (count > 0) {
+    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(count, away.size()));
+    read(std::span(away).first(n));
+    count -= n;
+  }
+}
+
 namespace {
 
 void check_crc(const BinaryFile& file, const PackedArray& array, std::uint32_t found) {

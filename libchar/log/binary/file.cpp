@@ -7,11 +7,77 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <span>
+#include <system_error>
+#include <vector>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/sha256.hpp"
 
 namespace libchar {
+
+std::string wrong_start(std::string_view found, std::string_view mark, std::string_view what) {
+  if (found.empty()) return fmt::format("is empty, {} was expected", what);
+  if (found.size() < mark.size() && mark.starts_with(found))
+    return fmt::format(
+        "ends at byte {}, inside the {} bytes that mark {}: no whole message or array is there",
+        found.size(),
+        mark.size(),
+        what);
+  return fmt::format("does not begin like {}", what);
+}
+
+FileHash::~FileHash() {
+  stop_ = true;
+  if (hashing_.valid()) hashing_.wait();
+}
+
+void FileHash::start() {
+  if (!wanted_ || hashing_.valid() || !digest_.empty()) return;
+  const auto hash = [this] { return digest_of_files(); };
+  try {
+    hashing_ = std::async(std::launch::async, hash);
+  } catch (const std::system_error&) {  // no thread is to be had: afterwards, then
+    hashing_ = std::async(std::launch::deferred, hash);
+  }
+}
+
+std::string FileHash::finish() {
+  start();
+  if (hashing_.valid()) digest_ = hashing_.get();
+  return digest_;
+}
+
+std::string FileHash::digest_of_files() const {
+  Sha256 sha;
+  std::vector<std::byte> piece(std::size_t{1} << 20U);
+  for (const BinaryFile* file : files_)
+    for (std::uint64_t at = 0; at < file->size() && !stop_;) {
+      const auto n =
+          static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file->size() - at));
+      file->read(at, std::span(piece).first(n));
+      sha.update({reinterpret_cast<const char*>(piece.data()), n});
+      at += n;
+    }
+  return sha.finish();
+}
+
+const std::byte* FileWindow::load(std::uint64_t byte, std::size_t count) {
+  if (byte > file_->size() || count > file_->size() - byte) return nullptr;
+  const std::uint64_t front = std::min<std::uint64_t>(byte, kept_);
+  const std::uint64_t wanted =
+      std::min<std::uint64_t>(file_->size() - byte, std::max(block_, count));
+  // Emptied first: after a failed read no bytes stand here that are not the file's.
+  bytes_.clear();
+  std::vector<std::byte> fresh(static_cast<std::size_t>(front + wanted));
+  file_->read(byte - front, fresh);
+  bytes_.swap(fresh);
+  first_ = byte - front;
+  return bytes_.data() + front;
+}
 
 BinaryFile::BinaryFile(std::string path) : path_(std::move(path)) {
   const auto fail = [&](const char* code, std::string what, std::string hint) {

@@ -163,10 +163,6 @@ Format imu_format() {
   row.about.name = "imu";
   row.about.title = "SMAC and EPFL increments";
   row.about.suffixes = {".imu"};
-  row.about.names = "yes";
-  row.about.units = "yes";
-  row.about.rate = "by stamps";
-  row.about.start = "yes";
   row.sniff = sniff_imu;
   row.open = open_imu;
   return row;

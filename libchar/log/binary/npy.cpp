@@ -1,14 +1,13 @@
 // The .npy format: 1-D, 2-D (rows × channels, C or Fortran order) and structured arrays of plain
 // numbers.
 
-#include "libchar/log/write/npy.hpp"
-
 #include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/binary/rows.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/write/writers.hpp"
 
 namespace libchar {
 namespace {

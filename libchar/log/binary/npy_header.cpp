@@ -6,7 +6,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/utf8.hpp"
-#include "libchar/log/binary/wrong_start.hpp"
+#include "libchar/log/binary/file.hpp"
 
 namespace libchar {
 namespace {

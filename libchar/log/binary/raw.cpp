@@ -1,14 +1,13 @@
 // The raw format: numbers of one type without a header, interleaved or planar, described by a
 // sidecar.
 
-#include "libchar/log/write/raw.hpp"
-
 #include <fmt/format.h>
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/binary/rows.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/write/writers.hpp"
 
 namespace libchar {
 namespace {
@@ -110,11 +109,8 @@ Format raw_format() {
   row.about.suffixes = {
       ".f64", ".f32", ".i16", ".i32", ".i8", ".i64", ".u8", ".u16", ".u32", ".u64", ".bin", ".raw"};
   row.about.otherwise = "any with a sidecar";
-  row.about.names = "yes";
-  row.about.units = "yes";
   row.about.rows_at_places = true;
   row.about.rate = "yes";
-  row.about.start = "yes";
   row.about.written_suffixes = {".f64", ".f32", ".bin", ".raw"};
   row.about.writes_rate = true;
   row.sniff = sniff_raw;

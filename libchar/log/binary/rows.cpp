@@ -8,7 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/log/binary/file_hash.hpp"
+#include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/stamps.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/odd_values.hpp"
@@ -39,7 +39,7 @@ class BinaryRows final : public RowSource {
       : file_(std::move(file)),
         layout_(std::move(layout)),
         info_(std::move(info)),
-        overflow_as_missing_(options.overflow_as_missing),
+        overflow_as_missing_(options.missing.overflow),
         hash_(*file_, options.hash) {
     info_.file = file_->path();
     const TableFront table = front();

@@ -1,14 +1,14 @@
 // CSV as a source of rows: chunks of whole lines, parsed side by side ahead of the caller (chunk_pipeline.hpp) or, with one
 // thread, inside next(); here they become rows with warnings, and every byte and cell is accounted for.
 
-#include "libchar/log/write/csv.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/process/thread_limit.hpp"
@@ -18,12 +18,98 @@
 #include "libchar/log/csv/head/dialect.hpp"
 #include "libchar/log/csv/head/header.hpp"
 #include "libchar/log/csv/head/plan.hpp"
-#include "libchar/log/csv/pivot.hpp"
 #include "libchar/log/csv/rows/rows.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/detail/odd_values.hpp"
+#include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/write/writers.hpp"
 
 namespace libchar {
+namespace {
+
+// Long tables made wide: rows that say whose they are (sensor, time, x, y) become rows with the channels of all.
+
+/// Rows of one stamp become one row; with `cycles` a turn of all groups does, at the stamp of its first. What a group does not say
+/// at a stamp is missing.
+class Pivot {
+ public:
+  Pivot() = default;
+  Pivot(std::size_t channels, std::size_t groups, bool timed, bool cycles);
+  bool active() const { return groups_ > 0; }
+
+  /// Replaces the rows of `block`, whose groups these are, by those that are complete.
+  void widen(RowBlock& block, const std::vector<std::uint32_t>& groups);
+  /// The last row, at the end of the file; false when there is none.
+  bool flush(RowBlock& block);
+
+ private:
+  void begin(RowBlock& out);
+  void emit(RowBlock& out);
+
+  std::size_t channels_ = 0, groups_ = 0;
+  bool timed_ = false, cycles_ = false, any_ = false;
+  std::vector<double> values_;
+  std::vector<bool> filled_;
+  std::int64_t stamp_ = 0;
+  std::uint64_t line_ = 0;
+};
+
+Pivot::Pivot(std::size_t channels, std::size_t groups, bool timed, bool cycles)
+    : channels_(channels),
+      groups_(groups),
+      timed_(timed),
+      cycles_(cycles || !timed),
+      values_(channels * groups, kMissing),
+      filled_(groups, false) {}
+
+void Pivot::begin(RowBlock& out) {
+  out.rows = 0;
+  out.columns.resize(channels_ * groups_);
+  for (auto& column : out.columns) column.clear();
+  out.time_ns.clear();
+  out.line_offset.clear();
+  out.first_line = line_;
+}
+
+void Pivot::emit(RowBlock& out) {
+  for (std::size_t c = 0; c < values_.size(); ++c) out.columns[c].push_back(values_[c]);
+  if (timed_) out.time_ns.push_back(stamp_);
+  out.line_offset.push_back(static_cast<std::uint32_t>(line_ - out.first_line));
+  ++out.rows;
+  std::fill(values_.begin(), values_.end(), kMissing);
+  std::fill(filled_.begin(), filled_.end(), false);
+  any_ = false;
+}
+
+void Pivot::widen(RowBlock& block, const std::vector<std::uint32_t>& groups) {
+  RowBlock out;
+  if (!any_) line_ = block.first_line;
+  begin(out);
+  for (std::size_t i = 0; i < block.rows; ++i) {
+    const std::uint32_t group = groups[i];
+    const std::int64_t stamp = timed_ ? block.time_ns[i] : 0;
+    if (any_ && (filled_[group] || (!cycles_ && stamp != stamp_))) emit(out);
+    if (!any_) {
+      any_ = true;
+      stamp_ = stamp;
+      line_ = block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
+    }
+    filled_[group] = true;
+    for (std::size_t c = 0; c < channels_; ++c)
+      values_[group * channels_ + c] = block.columns[c][i];
+  }
+  block = std::move(out);
+}
+
+bool Pivot::flush(RowBlock& block) {
+  if (!any_) return false;
+  begin(block);
+  emit(block);
+  return true;
+}
+
+}  // namespace
+
 namespace csv {
 namespace {
 
@@ -311,10 +397,6 @@ Format csv_format() {
   row.about.title = "CSV";
   row.about.suffixes = {".csv", ".tsv", ".txt", ".dat", ".lvm"};
   row.about.otherwise = "`-`";
-  row.about.names = "yes";
-  row.about.units = "yes";
-  row.about.rate = "by stamps";
-  row.about.start = "yes";
   row.about.written_suffixes = {".csv"};
   row.about.writes_stamps = true;
   row.about.from_pipes = true;

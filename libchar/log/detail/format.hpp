@@ -20,7 +20,7 @@ struct Format {
   /// Is a file of this format beyond doubt (a magic number that nothing else has), whatever it is
   /// called? Asked before suffixes; nullptr when no beginning is that clear.
   bool (*certain)(std::string_view first_bytes) = nullptr;
-  /// Does a file look like this format? Asked when no suffix decides.
+  /// Does a file look like this format? Asked when no suffix decides; nullptr where `certain` says all.
   bool (*sniff)(const std::string& path, std::string_view first_bytes) = nullptr;
   /// Of a format of one table; nullptr where `topics` is there.
   std::unique_ptr<RowSource> (*open)(const std::string& path, const ReadOptions& options) = nullptr;
@@ -32,6 +32,12 @@ struct Format {
                                       const LogInfo& info,
                                       const WriteOptions& options) = nullptr;
 };
+
+/// `Format::topics` by R(path, options).
+template <class R>
+std::unique_ptr<TopicReader> open_topics(const std::string& path, const ReadOptions& options) {
+  return std::make_unique<R>(path, options);
+}
 
 /// Opens a file of this format, of one table or of several streams.
 std::unique_ptr<RowSource> open_rows(const Format& format,

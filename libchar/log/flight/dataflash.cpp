@@ -34,17 +34,104 @@ class DataflashReader final : public TopicReader {
         log_(list_dataflash(file_, block_bytes_)) {}
 
   const std::vector<LogTopic>& topics() const override { return log_.topics; }
-  std::vector<std::string> dialect() const override;
+
+  std::vector<std::string> dialect() const override {
+    std::vector<std::string> lines = {"DataFlash log"};
+    if (!log_.firmware.empty()) lines.push_back(printable(log_.firmware, 60));
+    return lines;
+  }
+
   std::uint64_t bytes_read() const override { return walk_ ? walk_->position() : std::uint64_t{0}; }
-  std::vector<std::size_t> usual_fields(std::size_t topic) const override;
-  std::string stamps(std::size_t topic) const override;
-  FirstValues first_values(std::size_t topic, std::size_t field) override;
+
+  // Of a sensor's messages what it measures, in a unit; of others all but clocks and instances.
+  std::vector<std::size_t> usual_fields(std::size_t topic) const override {
+    const LogTopic& about = log_.topics[topic];
+    const DataflashTopic& content = log_.contents[topic];
+    std::vector<std::size_t> usual;
+    for (std::size_t i = 0; i < about.fields.size(); ++i) {
+      const Channel& field = about.fields[i];
+      const bool instance =
+          content.kind && log_.formats.kind(*content.kind).instance == content.channels[i].field;
+      if (instance || dataflash_no_sample(field.name)) continue;
+      if (!about.sensor || (!field.unit.empty() && field.unit != "s" && field.unit != "Hz"))
+        usual.push_back(i);
+    }
+    return usual;
+  }
+
+  std::string stamps(std::size_t topic) const override {
+    const DataflashTopic& content = log_.contents[topic];
+    if (!content.kind) return "SampleUS";
+    const DataflashClock& clock = clock_of(content);
+    return clock.byte ? clock.name : "";
+  }
+
+  FirstValues first_values(std::size_t topic, std::size_t field) override {
+    FirstValues first;
+    const DataflashTopic& content = log_.contents[topic];
+    if (!content.kind) return first;
+    topic_ = topic;
+    begin();
+    first.integers = log_.topics[topic].fields[field].integer;
+    Warnings ignored;
+    while (first.values.size() < kFirstRows) {
+      const auto body = next_body();
+      if (!body) break;
+      const double value = value_of(content.channels[field], *body, ignored);
+      if (std::isfinite(value)) first.values.push_back(value);
+    }
+    return first;
+  }
+
   void select(std::size_t topic,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
-              std::int64_t unit_ns) override;
-  bool next(RowBlock& block, std::size_t most, Warnings& warnings) override;
-  void finish(Warnings& warnings) override;
+              std::int64_t unit_ns) override {
+    topic_ = topic;
+    chosen_ = fields;
+    time_ = time;
+    unit_ns_ = unit_ns;
+    begin();
+  }
+
+  bool next(RowBlock& block, std::size_t most, Warnings& warnings) override {
+    const bool bursts = !log_.contents[topic_].kind;
+    while (block.rows < most) {
+      if (sample_ < samples_) {
+        add_samples(block, most);
+        continue;
+      }
+      const auto body = next_body();
+      if (!body) break;
+      if (!bursts) {
+        add_row(*body, block, warnings);
+        continue;
+      }
+      sample_ = 0;
+      samples_ = std::min<std::uint32_t>(kDataflashArray, burst_.samples - first_sample_);
+    }
+    return block.rows > 0;
+  }
+
+  void finish(Warnings& warnings) override {
+    warnings.merge(log_.losses);
+    for (const std::string& field : log_.formats.contradictions())
+      warnings.add(
+          "two_scales",
+          "fields whose format letter and multiplier say different scales: the multiplier is taken",
+          printable(field));
+    if (!walk_ || log_.contents[topic_].kind) return;
+    const DataflashTopic& content = log_.contents[topic_];
+    warnings.add(
+        "bursts",
+        fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a "
+                    "spectrum, no good for Allan deviations beyond {}",
+                    content.burst_samples,
+                    brief_text(content.burst_rate_hz, 6),
+                    duration_text(content.burst_samples / content.burst_rate_hz)),
+        "",
+        content.bursts);
+  }
 
  private:
   using Body = std::span<const std::byte>;
@@ -53,14 +140,132 @@ class DataflashReader final : public TopicReader {
     const bool sampled = content.sampled.byte && content.sampled.last != 0;
     return sampled && !by_logging_ ? content.sampled : content.logged;
   }
-  void begin();
-  std::optional<Body> next_body();
-  double value_of(const DataflashChannel& channel, Body body, Warnings& warnings) const;
-  std::int64_t time_of_field(Body body) const;
-  bool add_stamp(Body body, RowBlock& block, Warnings& warnings) const;
-  void add_row(Body body, RowBlock& block, Warnings& warnings);
-  void begin_samples(Body body);
-  void add_samples(RowBlock& block, std::size_t most);
+
+  void begin() {
+    formats_ = log_.formats;
+    formats_.rewind();
+    batches_ = {};
+    walk_.emplace(file_, block_bytes_, formats_, losses_again_);
+    messages_read_ = 0;
+    sample_ = samples_ = 0;
+  }
+
+  // The next message of the topic, or block of its bursts.
+  std::optional<Body> next_body() {
+    const DataflashTopic& content = log_.contents[topic_];
+    DataflashMessage message;
+    while (walk_->position() <= content.last_byte && walk_->next(message)) {
+      if (formats_.take(message.type, message.body)) continue;
+      const std::size_t index = *formats_.kind_of(message.type);
+      if (content.kind) {
+        if (index != *content.kind) continue;
+        if (dataflash_instance(formats_.kind(index), message.body) == content.instance)
+          return message.body;
+        continue;
+      }
+      const DataflashKind& kind = formats_.kind(index);
+      if (DataflashBatches::is_header(kind)) batches_.take_header(kind, message.body);
+      if (!DataflashBatches::is_block(kind)) continue;
+      const DataflashBurst* burst = batches_.burst_of(kind, message.body);
+      if (burst == nullptr || burst->type != content.batch_type ||
+          burst->instance != content.instance)
+        continue;
+      burst_ = *burst;
+      first_sample_ = DataflashBatches::first_sample(kind, message.body);
+      if (first_sample_ >= burst_.samples) continue;
+      constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t k = 0; k < kDataflashArray; ++k)
+          counts_[a][k] = static_cast<std::int16_t>(
+              little_endian<2>(message.body.data() + kind.find(kAxes[a], 'a')->byte + 2 * k));
+      return message.body;
+    }
+    return std::nullopt;
+  }
+
+  double value_of(const DataflashChannel& channel, Body body, Warnings& warnings) const {
+    const DataflashField& field =
+        log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
+    double value = 0;
+    if (read_numbers(body.data() + channel.byte, 0, {field.type, false}, {&value, 1}) > 0)
+      warnings.add("rounded_integer",
+                   "64-bit integers above 2^53 do not fit a double and were rounded",
+                   fmt::format("{} of message {}", printable(field.name), messages_read_));
+    return value * field.factor / field.divisor;
+  }
+
+  std::int64_t time_of_field(Body body) const {
+    const DataflashChannel& channel = log_.contents[topic_].channels[*time_];
+    const DataflashField& field =
+        log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
+    Warnings ignored;
+    const double value = value_of(channel, body, ignored);
+    const auto refuse = [&](const char* code, const char* what) {
+      throw Error({ErrorKind::input,
+                   code,
+                   fmt::format("{} (message {} of {}, field {})",
+                               file_.path(),
+                               messages_read_,
+                               printable(log_.topics[topic_].name),
+                               printable(field.name)),
+                   what,
+                   shortest(value),
+                   "`time_column` auto takes the stamps of the messages"});
+    };
+    if (std::isnan(value)) refuse("E0313", "missing time stamp");
+    std::int64_t stamp = 0;
+    if (!is_float(field.type) && field.factor == 1 && field.divisor == 1) {
+      if (!read_integers(body.data() + channel.byte, 0, {field.type, false}, {&stamp, 1}) &&
+          !__builtin_mul_overflow(stamp, unit_ns_, &stamp))
+        return stamp;
+      refuse("E0314", "a time stamp does not fit 64-bit nanoseconds");
+    }
+    const double ns = value * static_cast<double>(unit_ns_);
+    if (!(std::abs(ns) < 9.2e18)) refuse("E0314", "a time stamp does not fit 64-bit nanoseconds");
+    return std::llround(ns);
+  }
+
+  // False where the stamp is none, which is counted.
+  bool add_stamp(Body body, RowBlock& block, Warnings& warnings) const {
+    if (time_) {
+      block.time_ns.push_back(time_of_field(body));
+      return true;
+    }
+    const DataflashClock& clock = clock_of(log_.contents[topic_]);
+    if (!clock.byte) return true;
+    const std::byte* at = body.data() + *clock.byte;
+    const std::uint64_t stamp =
+        clock.type == NumberType::u64 ? little_endian<8>(at) : little_endian<4>(at);
+    if (stamp > kDataflashLargestStamp) {
+      warnings.add("unusable_stamp",
+                   "messages whose stamp is beyond 64-bit nanoseconds were left out",
+                   fmt::format("message {}", messages_read_));
+      return false;
+    }
+    block.time_ns.push_back(static_cast<std::int64_t>(stamp) * clock.unit_ns);
+    return true;
+  }
+
+  void add_row(Body body, RowBlock& block, Warnings& warnings) {
+    const DataflashTopic& content = log_.contents[topic_];
+    if (add_stamp(body, block, warnings)) {
+      for (std::size_t c = 0; c < chosen_.size(); ++c)
+        block.columns[c].push_back(value_of(content.channels[chosen_[c]], body, warnings));
+      ++block.rows;
+    }
+    ++messages_read_;
+  }
+
+  // Samples of the block in hand, as many as there is room for.
+  void add_samples(RowBlock& block, std::size_t most) {
+    for (; sample_ < samples_ && block.rows < most; ++sample_, ++block.rows) {
+      const double after_ns = (first_sample_ + sample_) * 1e9 / burst_.rate_hz;
+      block.time_ns.push_back(static_cast<std::int64_t>(burst_.start_us) * 1000 +
+                              std::llround(after_ns));
+      for (std::size_t c = 0; c < chosen_.size(); ++c)
+        block.columns[c].push_back(counts_[chosen_[c]][sample_] / burst_.multiplier);
+    }
+  }
 
   BinaryFile file_;
   std::size_t block_bytes_;
@@ -80,230 +285,6 @@ class DataflashReader final : public TopicReader {
   std::array<std::array<std::int16_t, kDataflashArray>, 3> counts_{};
   std::uint32_t first_sample_ = 0, sample_ = 0, samples_ = 0;
 };
-
-std::vector<std::string> DataflashReader::dialect() const {
-  std::vector<std::string> lines = {"DataFlash log"};
-  if (!log_.firmware.empty()) lines.push_back(printable(log_.firmware, 60));
-  return lines;
-}
-
-// Of a sensor's messages what it measures, in a unit; of others all but clocks and instances.
-std::vector<std::size_t> DataflashReader::usual_fields(std::size_t topic) const {
-  const LogTopic& about = log_.topics[topic];
-  const DataflashTopic& content = log_.contents[topic];
-  std::vector<std::size_t> usual;
-  for (std::size_t i = 0; i < about.fields.size(); ++i) {
-    const Channel& field = about.fields[i];
-    const bool instance =
-        content.kind && log_.formats.kind(*content.kind).instance == content.channels[i].field;
-    if (instance || dataflash_no_sample(field.name)) continue;
-    if (!about.sensor || (!field.unit.empty() && field.unit != "s" && field.unit != "Hz"))
-      usual.push_back(i);
-  }
-  return usual;
-}
-
-std::string DataflashReader::stamps(std::size_t topic) const {
-  const DataflashTopic& content = log_.contents[topic];
-  if (!content.kind) return "SampleUS";
-  const DataflashClock& clock = clock_of(content);
-  return clock.byte ? clock.name : "";
-}
-
-void DataflashReader::begin() {
-  formats_ = log_.formats;
-  formats_.rewind();
-  batches_ = {};
-  walk_.emplace(file_, block_bytes_, formats_, losses_again_);
-  messages_read_ = 0;
-  sample_ = samples_ = 0;
-}
-
-void DataflashReader::select(std::size_t topic,
-                             const std::vector<std::size_t>& fields,
-                             std::optional<std::size_t> time,
-                             std::int64_t unit_ns) {
-  topic_ = topic;
-  chosen_ = fields;
-  time_ = time;
-  unit_ns_ = unit_ns;
-  begin();
-}
-
-// The next message of the topic, or block of its bursts.
-std::optional<DataflashReader::Body> DataflashReader::next_body() {
-  const DataflashTopic& content = log_.contents[topic_];
-  DataflashMessage message;
-  while (walk_->position() <= content.last_byte && walk_->next(message)) {
-    if (formats_.take(message.type, message.body)) continue;
-    const std::size_t index = *formats_.kind_of(message.type);
-    if (content.kind) {
-      if (index != *content.kind) continue;
-      if (dataflash_instance(formats_.kind(index), message.body) == content.instance)
-        return message.body;
-      continue;
-    }
-    const DataflashKind& kind = formats_.kind(index);
-    if (DataflashBatches::is_header(kind)) batches_.take_header(kind, message.body);
-    if (!DataflashBatches::is_block(kind)) continue;
-    const DataflashBurst* burst = batches_.burst_of(kind, message.body);
-    if (burst == nullptr || burst->type != content.batch_type ||
-        burst->instance != content.instance)
-      continue;
-    burst_ = *burst;
-    first_sample_ = DataflashBatches::first_sample(kind, message.body);
-    if (first_sample_ >= burst_.samples) continue;
-    constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t k = 0; k < kDataflashArray; ++k)
-        counts_[a][k] = static_cast<std::int16_t>(
-            little_endian<2>(message.body.data() + kind.find(kAxes[a], 'a')->byte + 2 * k));
-    return message.body;
-  }
-  return std::nullopt;
-}
-
-FirstValues DataflashReader::first_values(std::size_t topic, std::size_t field) {
-  FirstValues first;
-  const DataflashTopic& content = log_.contents[topic];
-  if (!content.kind) return first;
-  topic_ = topic;
-  begin();
-  first.integers = log_.topics[topic].fields[field].integer;
-  Warnings ignored;
-  while (first.values.size() < kFirstRows) {
-    const auto body = next_body();
-    if (!body) break;
-    const double value = value_of(content.channels[field], *body, ignored);
-    if (std::isfinite(value)) first.values.push_back(value);
-  }
-  return first;
-}
-
-double DataflashReader::value_of(const DataflashChannel& channel,
-                                 Body body,
-                                 Warnings& warnings) const {
-  const DataflashField& field =
-      log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
-  double value = 0;
-  if (read_numbers(body.data() + channel.byte, 0, {field.type, false}, {&value, 1}) > 0)
-    warnings.add("rounded_integer",
-                 "64-bit integers above 2^53 do not fit a double and were rounded",
-                 fmt::format("{} of message {}", printable(field.name), messages_read_));
-  return value * field.factor / field.divisor;
-}
-
-std::int64_t DataflashReader::time_of_field(Body body) const {
-  const DataflashChannel& channel = log_.contents[topic_].channels[*time_];
-  const DataflashField& field =
-      log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
-  Warnings ignored;
-  const double value = value_of(channel, body, ignored);
-  const auto refuse = [&](const char* code, const char* what) {
-    throw Error({ErrorKind::input,
-                 code,
-                 fmt::format("{} (message {} of {}, field {})",
-                             file_.path(),
-                             messages_read_,
-                             printable(log_.topics[topic_].name),
-                             printable(field.name)),
-                 what,
-                 shortest(value),
-                 "`time_column` auto takes the stamps of the messages"});
-  };
-  if (std::isnan(value)) refuse("E0313", "missing time stamp");
-  std::int64_t stamp = 0;
-  if (!is_float(field.type) && field.factor == 1 && field.divisor == 1) {
-    if (!read_integers(body.data() + channel.byte, 0, {field.type, false}, {&stamp, 1}) &&
-        !__builtin_mul_overflow(stamp, unit_ns_, &stamp))
-      return stamp;
-    refuse("E0314", "a time stamp does not fit 64-bit nanoseconds");
-  }
-  const double ns = value * static_cast<double>(unit_ns_);
-  if (!(std::abs(ns) < 9.2e18)) refuse("E0314", "a time stamp does not fit 64-bit nanoseconds");
-  return std::llround(ns);
-}
-
-// False where the stamp is none, which is counted.
-bool DataflashReader::add_stamp(Body body, RowBlock& block, Warnings& warnings) const {
-  if (time_) {
-    block.time_ns.push_back(time_of_field(body));
-    return true;
-  }
-  const DataflashClock& clock = clock_of(log_.contents[topic_]);
-  if (!clock.byte) return true;
-  const std::byte* at = body.data() + *clock.byte;
-  const std::uint64_t stamp =
-      clock.type == NumberType::u64 ? little_endian<8>(at) : little_endian<4>(at);
-  if (stamp > kDataflashLargestStamp) {
-    warnings.add("unusable_stamp",
-                 "messages whose stamp is beyond 64-bit nanoseconds were left out",
-                 fmt::format("message {}", messages_read_));
-    return false;
-  }
-  block.time_ns.push_back(static_cast<std::int64_t>(stamp) * clock.unit_ns);
-  return true;
-}
-
-void DataflashReader::add_row(Body body, RowBlock& block, Warnings& warnings) {
-  const DataflashTopic& content = log_.contents[topic_];
-  if (add_stamp(body, block, warnings)) {
-    for (std::size_t c = 0; c < chosen_.size(); ++c)
-      block.columns[c].push_back(value_of(content.channels[chosen_[c]], body, warnings));
-    ++block.rows;
-  }
-  ++messages_read_;
-}
-
-// Samples of the block in hand, as many as there is room for.
-void DataflashReader::add_samples(RowBlock& block, std::size_t most) {
-  for (; sample_ < samples_ && block.rows < most; ++sample_, ++block.rows) {
-    const double after_ns = (first_sample_ + sample_) * 1e9 / burst_.rate_hz;
-    block.time_ns.push_back(static_cast<std::int64_t>(burst_.start_us) * 1000 +
-                            std::llround(after_ns));
-    for (std::size_t c = 0; c < chosen_.size(); ++c)
-      block.columns[c].push_back(counts_[chosen_[c]][sample_] / burst_.multiplier);
-  }
-}
-
-bool DataflashReader::next(RowBlock& block, std::size_t most, Warnings& warnings) {
-  const bool bursts = !log_.contents[topic_].kind;
-  while (block.rows < most) {
-    if (sample_ < samples_) {
-      add_samples(block, most);
-      continue;
-    }
-    const auto body = next_body();
-    if (!body) break;
-    if (!bursts) {
-      add_row(*body, block, warnings);
-      continue;
-    }
-    sample_ = 0;
-    samples_ = std::min<std::uint32_t>(kDataflashArray, burst_.samples - first_sample_);
-  }
-  return block.rows > 0;
-}
-
-void DataflashReader::finish(Warnings& warnings) {
-  warnings.merge(log_.losses);
-  for (const std::string& field : log_.formats.contradictions())
-    warnings.add(
-        "two_scales",
-        "fields whose format letter and multiplier say different scales: the multiplier is taken",
-        printable(field));
-  if (!walk_ || log_.contents[topic_].kind) return;
-  const DataflashTopic& content = log_.contents[topic_];
-  warnings.add(
-      "bursts",
-      fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a "
-                  "spectrum, no good for Allan deviations beyond {}",
-                  content.burst_samples,
-                  brief_text(content.burst_rate_hz, 6),
-                  duration_text(content.burst_samples / content.burst_rate_hz)),
-      "",
-      content.bursts);
-}
 
 // A log begins with the FMT of FMT, as a rule: 89 bytes that say so.
 bool surely_dataflash(std::string_view first_bytes) {
@@ -334,15 +315,8 @@ Format dataflash_format() {
   row.about.title = "ArduPilot DataFlash";
   row.about.brief = "DataFlash .bin";
   row.about.otherwise = "`.bin` that begins like one";
-  row.about.names = "yes";
-  row.about.units = "yes";
-  row.about.rate = "by stamps";
-  row.about.start = "yes";
   row.about.topics = true;
   row.certain = surely_dataflash;
-  row.sniff = [](const std::string&, std::string_view first_bytes) {
-    return surely_dataflash(first_bytes);
-  };
   row.topics = open_dataflash;
   return row;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "libchar/core/text/text.hpp"
 #include "libchar/log/flight/dataflash_units.hpp"
 
 namespace libchar {
@@ -58,13 +57,115 @@ class DataflashLister {
   explicit DataflashLister(DataflashListing& listing) : listing_(&listing) {}
 
   void note(const DataflashMessage& message);
-  void describe_topics();
+
+  void describe_topics() {
+    listing_->formats.apply_units();
+    std::map<std::string, int> names;
+    for (std::size_t i = 0; i < listing_->topics.size(); ++i) {
+      LogTopic& about = listing_->topics[i];
+      describe_topic(listing_->contents[i], about);
+      // A message whose format changed within the log is one topic before and another one behind.
+      if (const int again = names[about.name]++; again > 0)
+        about.name += fmt::format(" #{}", again + 1);
+    }
+  }
 
  private:
-  DataflashTopic* topic_of(std::size_t kind, std::int64_t instance);
-  DataflashTopic* topic_of(const DataflashBurst& burst);
-  void note_block(const DataflashKind& kind, const DataflashMessage& message);
-  void describe_topic(DataflashTopic& content, LogTopic& about);
+  DataflashTopic* topic_of(std::size_t kind, std::int64_t instance) {
+    const auto [place, fresh] = of_kind_.try_emplace({kind, instance}, listing_->contents.size());
+    if (!fresh) return &listing_->contents[place->second];
+    if (listing_->contents.size() == kMostTopics) {
+      of_kind_.erase(place);
+      return nullptr;
+    }
+    const DataflashKind& about = listing_->formats.kind(kind);
+    DataflashTopic content;
+    content.kind = kind;
+    content.instance = instance;
+    content.logged = clock_of(about, "TimeUS", NumberType::u64);
+    if (!content.logged.byte) content.logged = clock_of(about, "TimeMS", NumberType::u32);
+    content.sampled = clock_of(about, "SampleUS", NumberType::u64);
+    listing_->contents.push_back(std::move(content));
+    listing_->topics.emplace_back();
+    return &listing_->contents.back();
+  }
+
+  DataflashTopic* topic_of(const DataflashBurst& burst) {
+    const auto [place, fresh] =
+        of_batch_.try_emplace({burst.type, burst.instance}, listing_->contents.size());
+    if (!fresh) return &listing_->contents[place->second];
+    DataflashTopic content;
+    content.instance = burst.instance;
+    content.batch_type = burst.type;
+    listing_->contents.push_back(std::move(content));
+    listing_->topics.emplace_back();
+    listing_->topics.back().name = batch_name(burst);
+    return &listing_->contents.back();
+  }
+
+  void note_block(const DataflashKind& kind, const DataflashMessage& message) {
+    const DataflashBurst* burst = batches_.burst_of(kind, message.body);
+    if (burst == nullptr) {
+      listing_->losses.add(
+          "burst_without_header",
+          "blocks of the batch sampler whose header is not there or says no rate and "
+          "no scale were left out",
+          fmt::format("byte {}", message.byte));
+      return;
+    }
+    DataflashTopic* content = topic_of(*burst);
+    const std::uint32_t first = DataflashBatches::first_sample(kind, message.body);
+    if (first >= burst->samples) return;
+    if (content->bursts == 0 || last_burst_ != burst->number) ++content->bursts;
+    last_burst_ = burst->number;
+    content->rows += std::min<std::uint32_t>(kDataflashArray, burst->samples - first);
+    content->last_byte = message.byte;
+    content->burst_samples = std::max(content->burst_samples, burst->samples);
+    content->burst_rate_hz = burst->rate_hz;
+  }
+
+  void describe_topic(DataflashTopic& content, LogTopic& about) {
+    about.rows = content.rows;
+    if (!content.kind) {
+      about.type = "batch sampler";
+      about.sensor = true;
+      about.rate_hz = content.burst_rate_hz;
+      const char* unit = content.batch_type == 0 ? "m/s^2" : content.batch_type == 1 ? "rad/s" : "";
+      for (const char* axis : {"x", "y", "z"}) about.fields.push_back({axis, unit, false});
+      return;
+    }
+    const DataflashKind& kind = listing_->formats.kind(*content.kind);
+    about.name =
+        content.instance < 0 ? kind.name : fmt::format("{} {}", kind.name, content.instance);
+    about.type = kind.name;
+    about.sensor = dataflash_sensor(kind.name);
+    about.why_not = kind.why_not;
+    if (!about.why_not.empty()) return;
+    if (fields_ > kMostFieldsInAll) {
+      about.why_not = "the log has too many fields in all";
+      return;
+    }
+    bool numbers = false;
+    for (std::size_t f = 0; f < kind.fields.size(); ++f) {
+      const DataflashField& field = kind.fields[f];
+      if (field.text) continue;
+      numbers = numbers || (!dataflash_no_sample(field.name) && kind.instance != f);
+      const bool integer = !is_float(field.type) && field.factor == 1 && field.divisor == 1;
+      for (std::uint32_t k = 0; k < (field.array ? kDataflashArray : 1U); ++k) {
+        about.fields.push_back(
+            {field.array ? fmt::format("{}[{}]", field.name, k) : field.name, field.unit, integer});
+        content.channels.push_back(
+            {f, field.byte + k * static_cast<std::uint32_t>(size_of(field.type))});
+      }
+    }
+    fields_ += about.fields.size();
+    if (!numbers) about.why_not = "text";
+    const DataflashClock& clock = content.logged;
+    if (clock.last > clock.first)
+      about.rate_hz =
+          static_cast<double>(content.rows - 1) * 1e9 /
+          (static_cast<double>(clock.last - clock.first) * static_cast<double>(clock.unit_ns));
+  }
 
   DataflashListing* listing_;
   std::map<std::pair<std::size_t, std::int64_t>, std::size_t> of_kind_;
@@ -73,38 +174,6 @@ class DataflashLister {
   std::optional<std::uint32_t> last_burst_;
   std::size_t fields_ = 0;  // described so far
 };
-
-DataflashTopic* DataflashLister::topic_of(std::size_t kind, std::int64_t instance) {
-  const auto [place, fresh] = of_kind_.try_emplace({kind, instance}, listing_->contents.size());
-  if (!fresh) return &listing_->contents[place->second];
-  if (listing_->contents.size() == kMostTopics) {
-    of_kind_.erase(place);
-    return nullptr;
-  }
-  const DataflashKind& about = listing_->formats.kind(kind);
-  DataflashTopic content;
-  content.kind = kind;
-  content.instance = instance;
-  content.logged = clock_of(about, "TimeUS", NumberType::u64);
-  if (!content.logged.byte) content.logged = clock_of(about, "TimeMS", NumberType::u32);
-  content.sampled = clock_of(about, "SampleUS", NumberType::u64);
-  listing_->contents.push_back(std::move(content));
-  listing_->topics.emplace_back();
-  return &listing_->contents.back();
-}
-
-DataflashTopic* DataflashLister::topic_of(const DataflashBurst& burst) {
-  const auto [place, fresh] =
-      of_batch_.try_emplace({burst.type, burst.instance}, listing_->contents.size());
-  if (!fresh) return &listing_->contents[place->second];
-  DataflashTopic content;
-  content.instance = burst.instance;
-  content.batch_type = burst.type;
-  listing_->contents.push_back(std::move(content));
-  listing_->topics.emplace_back();
-  listing_->topics.back().name = batch_name(burst);
-  return &listing_->contents.back();
-}
 
 void DataflashLister::note(const DataflashMessage& message) {
   DataflashFormats& formats = listing_->formats;
@@ -129,81 +198,6 @@ void DataflashLister::note(const DataflashMessage& message) {
   if (kind.name != "MSG" || !listing_->firmware.empty()) return;
   if (const DataflashField* text = kind.find("Message", 'Z'); text != nullptr)
     listing_->firmware = dataflash_text(message.body.subspan(text->byte, 64));
-}
-
-void DataflashLister::note_block(const DataflashKind& kind, const DataflashMessage& message) {
-  const DataflashBurst* burst = batches_.burst_of(kind, message.body);
-  if (burst == nullptr) {
-    listing_->losses.add(
-        "burst_without_header",
-        "blocks of the batch sampler whose header is not there or says no rate and "
-        "no scale were left out",
-        fmt::format("byte {}", message.byte));
-    return;
-  }
-  DataflashTopic* content = topic_of(*burst);
-  const std::uint32_t first = DataflashBatches::first_sample(kind, message.body);
-  if (first >= burst->samples) return;
-  if (content->bursts == 0 || last_burst_ != burst->number) ++content->bursts;
-  last_burst_ = burst->number;
-  content->rows += std::min<std::uint32_t>(kDataflashArray, burst->samples - first);
-  content->last_byte = message.byte;
-  content->burst_samples = std::max(content->burst_samples, burst->samples);
-  content->burst_rate_hz = burst->rate_hz;
-}
-
-void DataflashLister::describe_topics() {
-  listing_->formats.apply_units();
-  std::map<std::string, int> names;
-  for (std::size_t i = 0; i < listing_->topics.size(); ++i) {
-    LogTopic& about = listing_->topics[i];
-    describe_topic(listing_->contents[i], about);
-    // A message whose format changed within the log is one topic before and another one behind.
-    if (const int again = names[about.name]++; again > 0)
-      about.name += fmt::format(" #{}", again + 1);
-  }
-}
-
-void DataflashLister::describe_topic(DataflashTopic& content, LogTopic& about) {
-  about.rows = content.rows;
-  if (!content.kind) {
-    about.type = "batch sampler";
-    about.sensor = true;
-    about.rate_hz = content.burst_rate_hz;
-    const char* unit = content.batch_type == 0 ? "m/s^2" : content.batch_type == 1 ? "rad/s" : "";
-    for (const char* axis : {"x", "y", "z"}) about.fields.push_back({axis, unit, false});
-    return;
-  }
-  const DataflashKind& kind = listing_->formats.kind(*content.kind);
-  about.name = content.instance < 0 ? kind.name : fmt::format("{} {}", kind.name, content.instance);
-  about.type = kind.name;
-  about.sensor = dataflash_sensor(kind.name);
-  about.why_not = kind.why_not;
-  if (!about.why_not.empty()) return;
-  if (fields_ > kMostFieldsInAll) {
-    about.why_not = "the log has too many fields in all";
-    return;
-  }
-  bool numbers = false;
-  for (std::size_t f = 0; f < kind.fields.size(); ++f) {
-    const DataflashField& field = kind.fields[f];
-    if (field.text) continue;
-    numbers = numbers || (!dataflash_no_sample(field.name) && kind.instance != f);
-    const bool integer = !is_float(field.type) && field.factor == 1 && field.divisor == 1;
-    for (std::uint32_t k = 0; k < (field.array ? kDataflashArray : 1U); ++k) {
-      about.fields.push_back(
-          {field.array ? fmt::format("{}[{}]", field.name, k) : field.name, field.unit, integer});
-      content.channels.push_back(
-          {f, field.byte + k * static_cast<std::uint32_t>(size_of(field.type))});
-    }
-  }
-  fields_ += about.fields.size();
-  if (!numbers) about.why_not = "text";
-  const DataflashClock& clock = content.logged;
-  if (clock.last > clock.first)
-    about.rate_hz =
-        static_cast<double>(content.rows - 1) * 1e9 /
-        (static_cast<double>(clock.last - clock.first) * static_cast<double>(clock.unit_ns));
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "libchar/core/warnings.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/flight/dataflash_format.hpp"
-#include "libchar/log/flight/dataflash_walk.hpp"
 #include "libchar/log/recording.hpp"
 
 namespace libchar {

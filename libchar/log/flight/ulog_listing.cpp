@@ -99,11 +99,113 @@ class Lister {
   }
 
  private:
-  void subscribe(Data body);
-  void note_data(const UlogMessage& message);
-  void note_dropout(const UlogMessage& message);
-  void drop_empty_topics();
-  void describe_topic(std::size_t topic);
+  void subscribe(Data body) {
+    const auto instance = std::to_integer<unsigned>(body[0]);
+    const auto id = static_cast<std::size_t>(little_endian<2>(body.data() + 1));
+    const std::string message(reinterpret_cast<const char*>(body.data()) + 3, body.size() - 3);
+    const std::string name = fmt::format("{} {}", message, instance);
+    const auto [place, fresh] = topic_of_name_.try_emplace(name, listing_->topics.size());
+    if (fresh) {
+      listing_->contents.push_back(new_topic(message, formats_.layout(message)));
+      listing_->topics.emplace_back();
+      listing_->topics.back().name = name;
+    }
+    if (id >= listing_->sizes.size()) {
+      listing_->sizes.resize(id + 1);
+      listing_->topic_of_id.resize(id + 1);
+    }
+    if (listing_->topic_of_id[id].value_or(place->second) != place->second) {
+      for (const std::size_t topic : {*listing_->topic_of_id[id], place->second})
+        listing_->topics[topic].why_not =
+            fmt::format("its number {} is that of another topic too", id);
+      return;
+    }
+    listing_->topic_of_id[id] = place->second;
+    const UlogLayout& layout = listing_->contents[place->second].layout;
+    listing_->sizes[id] =
+        layout.why_not.empty() ? UlogSizes{true, layout.least_bytes, layout.bytes} : UlogSizes{};
+  }
+
+  void note_data(const UlogMessage& message) {
+    const auto id = static_cast<std::size_t>(little_endian<2>(message.body.data()));
+    Warnings& losses = listing_->losses;
+    if (id >= listing_->topic_of_id.size() || !listing_->topic_of_id[id]) {
+      losses.add("unknown_message",
+                 "messages of data that no subscription announces were left out",
+                 fmt::format("byte {}", message.byte));
+      return;
+    }
+    UlogTopic& content = listing_->contents[*listing_->topic_of_id[id]];
+    const Data data = message.body.subspan(2);
+    if (!content.layout.why_not.empty()) {
+      ++content.messages;
+      return;
+    }
+    if (data.size() < content.layout.least_bytes || data.size() > content.layout.bytes) {
+      losses.add("wrong_size",
+                 "messages that are shorter or longer than their format were left out",
+                 fmt::format("byte {}", message.byte));
+      return;
+    }
+    std::uint64_t rows = 1;
+    if (content.fifo)
+      rows = std::min<std::uint64_t>(std::to_integer<unsigned>(data[content.fifo->samples]),
+                                     content.fifo->room);
+    if (content.messages == 0) {
+      content.first_byte = message.byte;
+      content.rows_of_first = rows;
+    }
+    content.last_byte = message.byte;
+    ++content.messages;
+    content.rows += rows;
+    if (content.published.byte) {
+      note_stamp(content.published, data);
+      last_stamp_ = std::max(last_stamp_, content.published.last);
+    }
+    if (content.sampled.byte) note_stamp(content.sampled, data);
+  }
+
+  void note_dropout(const UlogMessage& message) {
+    const std::uint64_t ms = little_endian<2>(message.body.data());
+    ++listing_->dropouts;
+    listing_->dropped_ms += ms;
+    if (listing_->dropout_places.size() < 3)
+      listing_->dropout_places.push_back(
+          fmt::format("{} ms at {:.3f} s", ms, static_cast<double>(last_stamp_) * 1e-6));
+  }
+
+  void drop_empty_topics() {
+    std::vector<LogTopic> topics;
+    std::vector<UlogTopic> contents;
+    std::vector<std::optional<std::size_t>> kept(listing_->topics.size());
+    for (std::size_t t = 0; t < kept.size(); ++t) {
+      if (listing_->contents[t].messages == 0) continue;
+      kept[t] = topics.size();
+      topics.push_back(std::move(listing_->topics[t]));
+      contents.push_back(std::move(listing_->contents[t]));
+    }
+    listing_->topics = std::move(topics);
+    listing_->contents = std::move(contents);
+    for (std::optional<std::size_t>& topic : listing_->topic_of_id)
+      if (topic) topic = kept[*topic];
+  }
+
+  void describe_topic(std::size_t topic) {
+    const UlogTopic& content = listing_->contents[topic];
+    LogTopic& about = listing_->topics[topic];
+    about.rows = content.layout.why_not.empty() ? content.rows : content.messages;
+    about.type = content.message;
+    about.sensor = px4_sensor(content.message);
+    if (about.why_not.empty()) about.why_not = content.layout.why_not;
+    if (about.why_not.empty() && formats_.contradicted())
+      about.why_not = formats_.layout(content.message).why_not;
+    if (!about.why_not.empty()) return;
+    about.fields = fields_of(content);
+    const UlogStamps& stamps = ulog_stamps(content, by_publication_);
+    if (stamps.last > stamps.first)
+      about.rate_hz = static_cast<double>(content.rows - content.rows_of_first) * 1e6 /
+                      static_cast<double>(stamps.last - stamps.first);
+  }
 
   UlogListing* listing_;
   bool by_publication_;
@@ -111,114 +213,6 @@ class Lister {
   std::map<std::string, std::size_t> topic_of_name_;
   std::uint64_t last_stamp_ = 0;
 };
-
-void Lister::subscribe(Data body) {
-  const auto instance = std::to_integer<unsigned>(body[0]);
-  const auto id = static_cast<std::size_t>(little_endian<2>(body.data() + 1));
-  const std::string message(reinterpret_cast<const char*>(body.data()) + 3, body.size() - 3);
-  const std::string name = fmt::format("{} {}", message, instance);
-  const auto [place, fresh] = topic_of_name_.try_emplace(name, listing_->topics.size());
-  if (fresh) {
-    listing_->contents.push_back(new_topic(message, formats_.layout(message)));
-    listing_->topics.emplace_back();
-    listing_->topics.back().name = name;
-  }
-  if (id >= listing_->sizes.size()) {
-    listing_->sizes.resize(id + 1);
-    listing_->topic_of_id.resize(id + 1);
-  }
-  if (listing_->topic_of_id[id].value_or(place->second) != place->second) {
-    for (const std::size_t topic : {*listing_->topic_of_id[id], place->second})
-      listing_->topics[topic].why_not =
-          fmt::format("its number {} is that of another topic too", id);
-    return;
-  }
-  listing_->topic_of_id[id] = place->second;
-  const UlogLayout& layout = listing_->contents[place->second].layout;
-  listing_->sizes[id] =
-      layout.why_not.empty() ? UlogSizes{true, layout.least_bytes, layout.bytes} : UlogSizes{};
-}
-
-void Lister::note_data(const UlogMessage& message) {
-  const auto id = static_cast<std::size_t>(little_endian<2>(message.body.data()));
-  Warnings& losses = listing_->losses;
-  if (id >= listing_->topic_of_id.size() || !listing_->topic_of_id[id]) {
-    losses.add("unknown_message",
-               "messages of data that no subscription announces were left out",
-               fmt::format("byte {}", message.byte));
-    return;
-  }
-  UlogTopic& content = listing_->contents[*listing_->topic_of_id[id]];
-  const Data data = message.body.subspan(2);
-  if (!content.layout.why_not.empty()) {
-    ++content.messages;
-    return;
-  }
-  if (data.size() < content.layout.least_bytes || data.size() > content.layout.bytes) {
-    losses.add("wrong_size",
-               "messages that are shorter or longer than their format were left out",
-               fmt::format("byte {}", message.byte));
-    return;
-  }
-  std::uint64_t rows = 1;
-  if (content.fifo)
-    rows = std::min<std::uint64_t>(std::to_integer<unsigned>(data[content.fifo->samples]),
-                                   content.fifo->room);
-  if (content.messages == 0) {
-    content.first_byte = message.byte;
-    content.rows_of_first = rows;
-  }
-  content.last_byte = message.byte;
-  ++content.messages;
-  content.rows += rows;
-  if (content.published.byte) {
-    note_stamp(content.published, data);
-    last_stamp_ = std::max(last_stamp_, content.published.last);
-  }
-  if (content.sampled.byte) note_stamp(content.sampled, data);
-}
-
-void Lister::note_dropout(const UlogMessage& message) {
-  const std::uint64_t ms = little_endian<2>(message.body.data());
-  ++listing_->dropouts;
-  listing_->dropped_ms += ms;
-  if (listing_->dropout_places.size() < 3)
-    listing_->dropout_places.push_back(
-        fmt::format("{} ms at {:.3f} s", ms, static_cast<double>(last_stamp_) * 1e-6));
-}
-
-void Lister::drop_empty_topics() {
-  std::vector<LogTopic> topics;
-  std::vector<UlogTopic> contents;
-  std::vector<std::optional<std::size_t>> kept(listing_->topics.size());
-  for (std::size_t t = 0; t < kept.size(); ++t) {
-    if (listing_->contents[t].messages == 0) continue;
-    kept[t] = topics.size();
-    topics.push_back(std::move(listing_->topics[t]));
-    contents.push_back(std::move(listing_->contents[t]));
-  }
-  listing_->topics = std::move(topics);
-  listing_->contents = std::move(contents);
-  for (std::optional<std::size_t>& topic : listing_->topic_of_id)
-    if (topic) topic = kept[*topic];
-}
-
-void Lister::describe_topic(std::size_t topic) {
-  const UlogTopic& content = listing_->contents[topic];
-  LogTopic& about = listing_->topics[topic];
-  about.rows = content.layout.why_not.empty() ? content.rows : content.messages;
-  about.type = content.message;
-  about.sensor = px4_sensor(content.message);
-  if (about.why_not.empty()) about.why_not = content.layout.why_not;
-  if (about.why_not.empty() && formats_.contradicted())
-    about.why_not = formats_.layout(content.message).why_not;
-  if (!about.why_not.empty()) return;
-  about.fields = fields_of(content);
-  const UlogStamps& stamps = ulog_stamps(content, by_publication_);
-  if (stamps.last > stamps.first)
-    about.rate_hz = static_cast<double>(content.rows - content.rows_of_first) * 1e6 /
-                    static_cast<double>(stamps.last - stamps.first);
-}
 
 }  // namespace
 

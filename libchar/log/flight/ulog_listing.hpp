@@ -6,13 +6,11 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "libchar/core/warnings.hpp"
 #include "libchar/log/flight/ulog_format.hpp"
-#include "libchar/log/flight/ulog_header.hpp"
 #include "libchar/log/flight/ulog_walk.hpp"
 #include "libchar/log/recording.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libchar/core/warnings.hpp"
-#include "libchar/log/binary/window.hpp"
+#include "libchar/log/binary/file.hpp"
 
 namespace libchar {
 

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "libchar/core/error.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/log/ros/decompress.hpp"
 
 namespace libchar {
 namespace {
@@ -23,16 +26,75 @@ double rate_seen(const StreamCount& count) {
 
 }  // namespace
 
-void add_cut_end(Warnings& warnings,
-                 std::uint64_t size,
-                 std::string_view inside,
-                 std::uint64_t at) {
+void ChunkScan::begin_at(std::uint64_t at) {
+  at_ = at;
+  chunk_ = {};
+  single_ = ended_ = false;
+}
+
+void ChunkScan::only(std::vector<bool> streams, std::vector<std::uint64_t> skip) {
+  streams_ = std::move(streams);
+  skip_ = std::move(skip);
+}
+
+bool ChunkScan::next(RawMessage& message, StreamId& stream, Warnings& warnings) {
+  for (;;) {
+    while (!chunk_.empty())
+      if (chunk_record(message, stream, warnings)) return true;
+    if (ended_) return false;
+    const Step step = file_record(message, stream, warnings);
+    if (step == Step::message) return true;
+    if (step == Step::end) ended_ = true;
+  }
+}
+
+bool ChunkScan::enters(std::uint64_t at) {
+  chunk_at_ = at;
+  return !std::binary_search(skip_.begin(), skip_.end(), at);
+}
+
+void ChunkScan::note_packing(const std::string& method,
+                             std::uint64_t bytes,
+                             const char* rewrite,
+                             const char* unpack) {
+  const std::string name = method.empty() ? "none" : printable(method, 40);
+  if (packed_with_.find(name) == std::string::npos)
+    packed_with_ += (packed_with_.empty() ? "" : ", ") + name;
+  const auto refuse = [&](const char* code, std::string what, std::string hint) {
+    const std::string place = fmt::format("{} (byte {})", file_.path(), chunk_at_);
+    throw Error({ErrorKind::input, code, place, std::move(what), "", std::move(hint)});
+  };
+  if (bytes > kLargestChunk)
+    refuse("E0443",
+           fmt::format("a chunk of {} bytes, more than the limit of {}", bytes, kLargestChunk),
+           fmt::format("write it again with smaller chunks ({})", rewrite));
+  if (std::string why = why_not_packed(method); !why.empty())
+    refuse("E0442", std::move(why), fmt::format("write it again without ({})", unpack));
+}
+
+void ChunkScan::lose_chunk(Warnings& warnings, const char* what, const std::string& why) {
+  warnings.add(
+      "broken_chunk",
+      fmt::format("chunks that are broken (cannot be unpacked, or {}) were left out", what),
+      fmt::format("byte {}{}{}", chunk_at_, why.empty() ? "" : ": ", why));
+  chunk_ = {};
+}
+
+ChunkScan::Step ChunkScan::cut(Warnings& warnings,
+                               std::string_view inside,
+                               std::uint64_t at) const {
   warnings.add("cut_end",
                fmt::format("the file ends at byte {} {} (a recording that was not closed, or a "
                            "copy that was cut): only what is whole is read",
-                           size,
+                           file_.size(),
                            inside),
-               at < size ? fmt::format("which begins at byte {}", at) : std::string());
+               at < file_.size() ? fmt::format("which begins at byte {}", at) : std::string());
+  return Step::end;
+}
+
+std::string ChunkedTopics::packing() const {
+  const std::string& packed = scan_.packed_with();
+  return packed.empty() ? "" : ", chunks packed with " + packed;
 }
 
 void ChunkedTopics::look_at(StreamId stream, const RawMessage& message) {
@@ -51,10 +113,10 @@ bool ChunkedTopics::lacks_example(StreamId stream) const {
 }
 
 void ChunkedTopics::count_messages() {
-  scan().begin_at(first_record());
+  scan_.begin_at(first_record_);
   RawMessage message;
   StreamId stream = 0;
-  while (scan().next(message, stream, found_listing())) {
+  while (scan_.next(message, stream, found_listing())) {
     StreamCount& count = counts_[stream];
     count.first_ns = count.rows == 0 ? message.log_ns : std::min(count.first_ns, message.log_ns);
     count.last_ns = count.rows == 0 ? message.log_ns : std::max(count.last_ns, message.log_ns);
@@ -70,10 +132,10 @@ void ChunkedTopics::find_examples() {
   for (const ChunkPlace& chunk : chunks_) {
     const bool looked_for = std::any_of(
         chunk.streams.begin(), chunk.streams.end(), [&](StreamId id) { return lacks_example(id); });
-    if (!looked_for || chunk.at < first_record()) continue;
-    scan().begin_at(chunk.at);
-    scan().stop_behind_chunk();
-    while (scan().next(message, stream, found_listing())) look_at(stream, message);
+    if (!looked_for || chunk.at < first_record_) continue;
+    scan_.begin_at(chunk.at);
+    scan_.stop_behind_chunk();
+    while (scan_.next(message, stream, found_listing())) look_at(stream, message);
     for (auto& [id, count] : counts_) count.piece_ended = count.seen > 0;
   }
   const auto lacking = [&] {
@@ -82,8 +144,8 @@ void ChunkedTopics::find_examples() {
     });
   };
   if (!lacking()) return;
-  scan().begin_at(first_record());
-  while (scan().at() < kExampleBytes && scan().next(message, stream, found_listing())) {
+  scan_.begin_at(first_record_);
+  while (scan_.at() < kExampleBytes && scan_.next(message, stream, found_listing())) {
     if (!lacks_example(stream)) continue;
     look_at(stream, message);
     if (!lacking()) return;
@@ -119,13 +181,13 @@ void ChunkedTopics::start(std::size_t topic) {
             chunk.streams.begin(), chunk.streams.end(), [&](StreamId id) { return wanted[id]; }))
       skip.push_back(chunk.at);
   std::sort(skip.begin(), skip.end());
-  scan().only(std::move(wanted), std::move(skip));
-  scan().begin_at(first_record());
+  scan_.only(std::move(wanted), std::move(skip));
+  scan_.begin_at(first_record_);
 }
 
 bool ChunkedTopics::next_message(RawMessage& message, Warnings& warnings) {
   StreamId stream = 0;
-  if (scan().next(message, stream, warnings)) {
+  if (scan_.next(message, stream, warnings)) {
     ++seen_;
     return true;
   }

@@ -3,6 +3,7 @@
 // can be read: counts and first messages with or without an index, chunks that need not be looked
 // into, and what is missing at the end.
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "libchar/log/ros/file_window.hpp"
 #include "libchar/log/ros/messages/message_topics.hpp"
 
 namespace libchar {
@@ -17,26 +19,58 @@ namespace libchar {
 /// Channels of MCAP, connections of bags: every message is of one.
 using StreamId = std::uint16_t;
 
-/// Messages of a file in the order in which they stand there.
-class MessageScan {
+/// Messages of a file in the order in which they stand there: its own, and those of the chunk that is being read.
+class ChunkScan {
  public:
-  virtual ~MessageScan() = default;
+  explicit ChunkScan(MovingWindow& file) : file_(file) {}
+  virtual ~ChunkScan() = default;
   /// From the record at this byte on, as if nothing had been read.
-  virtual void begin_at(std::uint64_t at) = 0;
+  virtual void begin_at(std::uint64_t at);
   /// Ends behind the record at which it was told to begin: for a look at a single chunk.
-  virtual void stop_behind_chunk() = 0;
+  void stop_behind_chunk() { single_ = true; }
   /// Only messages of these streams (all by default); chunks at the bytes of `skip`, which is
   /// sorted, are not looked into.
-  virtual void only(std::vector<bool> streams, std::vector<std::uint64_t> skip) = 0;
+  void only(std::vector<bool> streams, std::vector<std::uint64_t> skip);
   /// The next message and its stream, false at the end.
-  virtual bool next(RawMessage& message, StreamId& stream, Warnings& warnings) = 0;
+  bool next(RawMessage& message, StreamId& stream, Warnings& warnings);
   /// Byte up to which the file has been read.
-  virtual std::uint64_t at() const = 0;
-};
+  std::uint64_t at() const { return std::min(at_, file_.size()); }
+  /// "" when no chunk was seen; "none", "lz4"…, as far as chunks were seen.
+  const std::string& packed_with() const { return packed_with_; }
 
-/// Counts the end of a file of `size` bytes that was never written, or copied, to its end: `inside`
-/// says of what ("inside a chunk", "without its index"), which begins at byte `at`.
-void add_cut_end(Warnings& warnings, std::uint64_t size, std::string_view inside, std::uint64_t at);
+ protected:
+  enum class Step { message, other, end };
+  virtual Step file_record(RawMessage& message, StreamId& stream, Warnings& warnings) = 0;
+  /// One record of the chunk in memory: is it a message that is wanted?
+  virtual bool chunk_record(RawMessage& message, StreamId& stream, Warnings& warnings) = 0;
+
+  bool wanted(StreamId stream) const { return streams_.empty() || streams_[stream]; }
+  /// The chunk at this byte of the file is the one that is read from now on, unless it is one to be skipped.
+  bool enters(std::uint64_t at);
+  /// Notes how the chunk is packed. Throws Error(input) where it is too large, or cannot be unpacked by
+  /// this program: `rewrite` and `unpack` write the file again.
+  void note_packing(const std::string& method,
+                    std::uint64_t bytes,
+                    const char* rewrite,
+                    const char* unpack);
+  void lose_chunk(Warnings& warnings, const char* what, const std::string& why = "");
+  /// Counts the end of a file that was never written, or copied, to its end: `inside` says of what
+  /// ("inside a chunk", "without its index"), which begins at byte `at`.
+  Step cut(Warnings& warnings, std::string_view inside, std::uint64_t at) const;
+
+  MovingWindow& file_;
+  std::uint64_t at_ = 0;
+  std::vector<std::byte> unpacked_;
+  std::span<const std::byte> chunk_;  ///< what is left of the chunk that is being read
+  std::uint64_t chunk_at_ = 0;
+  bool single_ = false;
+
+ private:
+  bool ended_ = false;
+  std::vector<bool> streams_;
+  std::vector<std::uint64_t> skip_;
+  std::string packed_with_;
+};
 
 struct ChunkPlace {
   std::uint64_t at = 0;
@@ -56,13 +90,22 @@ struct StreamCount {
 class ChunkedTopics : public MessageTopics {
  public:
   void finish(Warnings& warnings) override;
-  std::uint64_t bytes_read() const override { return scan().at(); }
+  std::uint64_t bytes_read() const override { return scan_.at(); }
 
  protected:
-  using MessageTopics::MessageTopics;
-  virtual MessageScan& scan() = 0;
-  virtual const MessageScan& scan() const = 0;
-  virtual std::uint64_t first_record() const = 0;
+  /// `scan`, of `file()`, need not be made yet.
+  ChunkedTopics(const std::string& path,
+                const ReadOptions& options,
+                bool publishes,
+                ChunkScan& scan,
+                std::uint64_t first_record)
+      : MessageTopics(path, options.time_source, publishes),
+        file_(path),
+        scan_(scan),
+        first_record_(first_record) {}
+  MovingWindow& file() { return file_; }
+  /// ", chunks packed with zstd"; "" when none was seen.
+  std::string packing() const;
 
   /// What the file's index says; then `find_examples`. Without one `count_messages`, which goes
   /// through everything once.
@@ -80,6 +123,9 @@ class ChunkedTopics : public MessageTopics {
   void look_at(StreamId stream, const RawMessage& message);
   bool lacks_example(StreamId stream) const;
 
+  MovingWindow file_;
+  ChunkScan& scan_;
+  std::uint64_t first_record_;
   std::vector<ChunkPlace> chunks_;
   std::map<StreamId, StreamCount> counts_;
   std::vector<std::vector<StreamId>> streams_;  // by topic

@@ -11,9 +11,7 @@
 #include <memory>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/file.hpp"
-#include "libchar/log/binary/wrong_start.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/decompress.hpp"
 #include "libchar/log/ros/messages/message_topics.hpp"
@@ -189,7 +187,7 @@ class Db3Reader final : public MessageTopics {
       what = fmt::format("ends at byte {}, inside the header of a database", bytes_);
       hint = "copy it again";
     } else if (const Warning* cut = found_early().find("cut_end")) {
-      what = fmt::format("holds no table of rosbag2 (topics, messages): {}", cut->message);
+      what = fmt::format("holds no table of rosbag2 (topics, messages): {}", cut->sentence);
       hint = "copy it again";
     }
     throw Error({ErrorKind::input, "E0446", path, std::move(what), "", std::move(hint)});
@@ -306,14 +304,6 @@ std::unique_ptr<TopicReader> open_db3(const std::string& path, const ReadOptions
 
 #endif
 
-bool certain_db3(std::string_view first_bytes) {
-  return first_bytes.starts_with(kSqliteMagic);
-}
-
-bool sniff_db3(const std::string&, std::string_view first_bytes) {
-  return certain_db3(first_bytes);
-}
-
 }  // namespace
 
 Format db3_format() {
@@ -321,13 +311,9 @@ Format db3_format() {
   row.about.name = "db3";
   row.about.title = "ROS 2 database";
   row.about.suffixes = {".db3"};
-  row.about.names = "yes";
   row.about.units = "of ROS types";
-  row.about.rate = "by stamps";
-  row.about.start = "yes";
   row.about.topics = true;
-  row.certain = certain_db3;
-  row.sniff = sniff_db3;
+  row.certain = [](std::string_view first_bytes) { return first_bytes.starts_with(kSqliteMagic); };
   row.topics = open_db3;
   return row;
 }

@@ -4,7 +4,7 @@
 
 namespace libchar {
 
-std::span<const std::byte> FileWindow::view(std::uint64_t at, std::size_t count) {
+std::span<const std::byte> MovingWindow::view(std::uint64_t at, std::size_t count) {
   if (at < begin_ || at + count > begin_ + filled_) {
     // What stands behind a large piece is looked at next, as a rule.
     const auto wanted = static_cast<std::size_t>(

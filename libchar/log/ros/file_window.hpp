@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,9 +11,9 @@
 
 namespace libchar {
 
-class FileWindow {
+class MovingWindow {
  public:
-  explicit FileWindow(const std::string& path) : file_(path) {}
+  explicit MovingWindow(const std::string& path) : file_(path) {}
   std::uint64_t size() const { return file_.size(); }
   const std::string& path() const { return file_.path(); }
   /// Bytes behind `at`, 0 beyond the end.

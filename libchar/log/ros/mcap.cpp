@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/mcap_scan.hpp"
@@ -19,10 +18,10 @@ constexpr std::uint64_t kFirstMcapRecord = 8;
 class McapReader final : public ChunkedTopics {
  public:
   McapReader(const std::string& path, const ReadOptions& options)
-      : ChunkedTopics(path, options.time_source, true), file_(path), scan_(file_, catalog_) {
-    check_mcap_magic(file_);
+      : ChunkedTopics(path, options, true, scan_, kFirstMcapRecord), scan_(file(), catalog_) {
+    check_mcap_magic(file());
     read_profile();
-    if (auto summary = read_mcap_summary(file_, found_early())) {
+    if (auto summary = read_mcap_summary(file(), found_early())) {
       take_summary(std::move(*summary));
       find_examples();
     } else {
@@ -32,23 +31,17 @@ class McapReader final : public ChunkedTopics {
   }
 
   std::vector<std::string> dialect() const override {
-    const std::string& packed = scan_.packed_with();
     return {fmt::format("MCAP{}{}{}",
                         profile_.empty() ? "" : ", profile " + printable(profile_, 40),
-                        packed.empty() ? "" : ", chunks packed with " + packed,
+                        packing(),
                         summary_ ? "" : ", no summary")};
   }
 
- protected:
-  MessageScan& scan() override { return scan_; }
-  const MessageScan& scan() const override { return scan_; }
-  std::uint64_t first_record() const override { return kFirstMcapRecord; }
-
  private:
   void read_profile() {
-    const std::uint64_t left = file_.left(kFirstMcapRecord);
-    const auto bytes =
-        file_.view(kFirstMcapRecord, static_cast<std::size_t>(std::min<std::uint64_t>(left, 4096)));
+    const std::uint64_t left = file().left(kFirstMcapRecord);
+    const auto bytes = file().view(kFirstMcapRecord,
+                                   static_cast<std::size_t>(std::min<std::uint64_t>(left, 4096)));
     if (bytes.size() > kMcapFront && bytes[0] == std::byte{1})
       profile_ = read_mcap_profile(bytes.subspan(kMcapFront)).value_or("");
   }
@@ -96,24 +89,11 @@ class McapReader final : public ChunkedTopics {
     list_topics(std::move(streams));
   }
 
-  FileWindow file_;
   McapCatalog catalog_;
   McapScan scan_;
   std::string profile_;
   bool summary_ = false;
 };
-
-std::unique_ptr<TopicReader> open_mcap(const std::string& path, const ReadOptions& options) {
-  return std::make_unique<McapReader>(path, options);
-}
-
-bool certain_mcap(std::string_view first_bytes) {
-  return first_bytes.starts_with(kMcapMagic);
-}
-
-bool sniff_mcap(const std::string&, std::string_view first_bytes) {
-  return certain_mcap(first_bytes);
-}
 
 }  // namespace
 
@@ -122,14 +102,10 @@ Format mcap_format() {
   row.about.name = "mcap";
   row.about.title = "MCAP";
   row.about.suffixes = {".mcap"};
-  row.about.names = "yes";
-  row.about.units = "of ROS types";
-  row.about.rate = "by stamps";
-  row.about.start = "yes";
   row.about.topics = true;
-  row.certain = certain_mcap;
-  row.sniff = sniff_mcap;
-  row.topics = open_mcap;
+  row.topics = open_topics<McapReader>;
+  row.about.units = "of ROS types";
+  row.certain = [](std::string_view first_bytes) { return first_bytes.starts_with(kMcapMagic); };
   return row;
 }
 

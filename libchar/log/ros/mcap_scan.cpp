@@ -7,17 +7,122 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/crc32.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/log/binary/wrong_start.hpp"
+#include "libchar/log/binary/file.hpp"
 #include "libchar/log/ros/byte_reader.hpp"
 #include "libchar/log/ros/decompress.hpp"
 
 namespace libchar {
+
+namespace {
+
+std::int64_t stamp_of(std::uint64_t ns) {
+  return static_cast<std::int64_t>(ns);
+}
+
+template <typename T>
+std::optional<T> if_good(const ByteReader& in, T value) {
+  if (!in.good()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::optional<std::string> read_mcap_profile(std::span<const std::byte> content) {
+  ByteReader in(content);
+  std::string profile = in.text();
+  return if_good(in, std::move(profile));
+}
+
+std::optional<std::pair<std::uint16_t, McapSchema>> read_mcap_schema(
+    std::span<const std::byte> content) {
+  ByteReader in(content);
+  const auto id = in.number<std::uint16_t>();
+  McapSchema schema;
+  schema.name = in.text();
+  schema.encoding = in.text();
+  schema.text = in.text();
+  return if_good(in, std::pair(id, std::move(schema)));
+}
+
+std::optional<std::pair<std::uint16_t, McapChannel>> read_mcap_channel(
+    std::span<const std::byte> content) {
+  ByteReader in(content);
+  const auto id = in.number<std::uint16_t>();
+  McapChannel channel;
+  channel.schema = in.number<std::uint16_t>();
+  channel.topic = in.text();
+  channel.encoding = in.text();
+  return if_good(in, std::pair(id, std::move(channel)));
+}
+
+std::optional<McapMessageFront> read_mcap_message(std::span<const std::byte> content) {
+  ByteReader in(content);
+  McapMessageFront front;
+  front.channel = in.number<std::uint16_t>();
+  in.number<std::uint32_t>();  // sequence
+  front.log_ns = stamp_of(in.number<std::uint64_t>());
+  front.publish_ns = stamp_of(in.number<std::uint64_t>());
+  return if_good(in, front);
+}
+
+std::optional<McapChunkFront> read_mcap_chunk(std::span<const std::byte> content) {
+  ByteReader in(content);
+  in.number<std::uint64_t>();  // times of the first and last message
+  in.number<std::uint64_t>();
+  McapChunkFront front;
+  front.unpacked = in.number<std::uint64_t>();
+  front.crc = in.number<std::uint32_t>();
+  front.compression = in.text();
+  front.packed = in.number<std::uint64_t>();
+  front.bytes = in.at();
+  return if_good(in, std::move(front));
+}
+
+std::optional<McapChunkIndex> read_mcap_chunk_index(std::span<const std::byte> content) {
+  ByteReader in(content);
+  McapChunkIndex index;
+  index.first_ns = in.number<std::uint64_t>();
+  index.last_ns = in.number<std::uint64_t>();
+  index.at = in.number<std::uint64_t>();
+  index.bytes = in.number<std::uint64_t>();
+  ByteReader offsets(in.take(in.number<std::uint32_t>()));
+  while (offsets.left() > 0) {
+    index.channels.push_back(offsets.number<std::uint16_t>());
+    offsets.number<std::uint64_t>();
+  }
+  return if_good(in, std::move(index));
+}
+
+std::optional<McapStatistics> read_mcap_statistics(std::span<const std::byte> content) {
+  ByteReader in(content);
+  McapStatistics statistics;
+  in.number<std::uint64_t>();  // messages in all
+  in.number<std::uint16_t>();  // schemas
+  in.take(16);                 // channels, attachments, metadata, chunks
+  statistics.first_ns = in.number<std::uint64_t>();
+  statistics.last_ns = in.number<std::uint64_t>();
+  ByteReader counts(in.take(in.number<std::uint32_t>()));
+  while (counts.left() > 0) {
+    const auto channel = counts.number<std::uint16_t>();
+    statistics.messages[channel] = counts.number<std::uint64_t>();
+  }
+  return if_good(in, std::move(statistics));
+}
+
+std::optional<McapFooter> read_mcap_footer(std::span<const std::byte> content) {
+  ByteReader in(content);
+  McapFooter footer;
+  footer.summary_at = in.number<std::uint64_t>();
+  in.number<std::uint64_t>();  // of the offsets of the summary
+  footer.crc = in.number<std::uint32_t>();
+  return if_good(in, footer);
+}
+
 namespace {
 
 constexpr std::uint64_t kFirstRecord = 8;  // behind the magic
 constexpr std::string_view kNoEndMark = "without its end mark";
-constexpr const char* kBrokenChunk =
-    "chunks that are broken (cannot be unpacked, or not what their checksum says) were left out";
+constexpr const char* kNotAsSaid = "not what their checksum says";
 
 struct RecordFront {
   McapOp op{};
@@ -57,7 +162,7 @@ void add_channel(std::span<const std::byte> content, McapCatalog& catalog, Warni
 }
 
 // The summary's records; nothing when one of them is broken.
-std::optional<McapSummary> summary_records(FileWindow& file,
+std::optional<McapSummary> summary_records(MovingWindow& file,
                                            std::uint64_t at,
                                            std::uint64_t end,
                                            Warnings& warnings) {
@@ -94,7 +199,7 @@ std::optional<McapSummary> summary_records(FileWindow& file,
 
 }  // namespace
 
-void check_mcap_magic(FileWindow& file) {
+void check_mcap_magic(MovingWindow& file) {
   const std::size_t size = std::min<std::uint64_t>(file.size(), kMcapMagic.size());
   const auto bytes = file.view(0, size);
   const std::string_view found(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -107,7 +212,7 @@ void check_mcap_magic(FileWindow& file) {
                "`format` auto finds out what it is"});
 }
 
-std::optional<McapSummary> read_mcap_summary(FileWindow& file, Warnings& warnings) {
+std::optional<McapSummary> read_mcap_summary(MovingWindow& file, Warnings& warnings) {
   constexpr std::uint64_t kEnd = kMcapFront + kMcapFooter + 8;
   if (file.size() < kFirstRecord + kEnd) return std::nullopt;
   const std::uint64_t footer_at = file.size() - kEnd;
@@ -138,48 +243,26 @@ std::optional<McapSummary> read_mcap_summary(FileWindow& file, Warnings& warning
 }
 
 void McapScan::begin_at(std::uint64_t at) {
-  at_ = at;
-  chunk_ = {};
-  single_ = ended_ = false;
+  ChunkScan::begin_at(at);
   crc_ = crc32_of(file_.view(0, kMcapMagic.size()));
   crc_covers_ = at == kFirstRecord;
 }
 
-void McapScan::only(std::vector<bool> streams, std::vector<std::uint64_t> skip) {
-  streams_ = std::move(streams);
-  skip_ = std::move(skip);
-}
-
-bool McapScan::next(RawMessage& message, StreamId& channel, Warnings& warnings) {
-  for (;;) {
-    while (!chunk_.empty())
-      if (chunk_record(message, channel, warnings)) return true;
-    if (ended_) return false;
-    const Step step = file_record(message, channel, warnings);
-    if (step == Step::message) return true;
-    if (step == Step::end) ended_ = true;
-  }
-}
-
-McapScan::Step McapScan::cut(Warnings& warnings, std::string_view inside) {
-  add_cut_end(warnings, file_.size(), inside, inside == kNoEndMark ? file_.size() : at_);
-  return Step::end;
-}
-
 McapScan::Step McapScan::file_record(RawMessage& message, StreamId& channel, Warnings& warnings) {
   const std::uint64_t left = file_.left(at_);
-  if (left < kMcapFront) return cut(warnings, left == 0 ? kNoEndMark : "inside a record");
+  const auto end = [&] { return cut(warnings, kNoEndMark, file_.size()); };
+  if (left < kMcapFront) return left == 0 ? end() : cut(warnings, "inside a record", at_);
   const RecordFront front = read_front(file_.view(at_, kMcapFront));
   const std::uint64_t content_at = at_ + kMcapFront, behind = left - kMcapFront;
   if (front.op == McapOp::chunk) {
     enter_chunk(content_at, std::min(front.length, behind), warnings);
     crc_covers_ = false;
-    if (front.length > behind) return cut(warnings, "inside a chunk");
+    if (front.length > behind) return cut(warnings, "inside a chunk", at_);
     at_ = content_at + front.length;
     return single_ ? Step::end : Step::other;
   }
   if (front.length > behind || static_cast<std::uint8_t>(front.op) == 0)
-    return cut(warnings, front.op == McapOp::message ? "inside a message" : "inside a record");
+    return cut(warnings, front.op == McapOp::message ? "inside a message" : "inside a record", at_);
   if (front.op != McapOp::data_end) note_crc(kMcapFront + front.length);
   at_ = content_at + front.length;
   const auto size = static_cast<std::size_t>(std::min(front.length, kLargestChunk + 1));
@@ -202,7 +285,7 @@ McapScan::Step McapScan::file_record(RawMessage& message, StreamId& channel, War
     }
     case McapOp::data_end:
       if (size >= 4) check_crc(file_.view(content_at, 4), warnings);
-      return ends_well() ? Step::end : cut(warnings, kNoEndMark);
+      return ends_well() ? Step::end : end();
     case McapOp::footer:
       return Step::end;
     default:
@@ -221,11 +304,9 @@ bool McapScan::ends_well() {
   return std::string_view(reinterpret_cast<const char*>(tail.data()), tail.size()) == kMcapMagic;
 }
 
-// One record of the chunk in memory: is it a message that is wanted?
 bool McapScan::chunk_record(RawMessage& message, StreamId& channel, Warnings& warnings) {
   const auto lose_rest = [&] {
-    warnings.add("broken_chunk", kBrokenChunk, fmt::format("byte {}", chunk_at_));
-    chunk_ = {};
+    lose_chunk(warnings, kNotAsSaid);
     return false;
   };
   if (chunk_.size() < kMcapFront) return lose_rest();
@@ -251,31 +332,13 @@ void McapScan::note_catalog(McapOp op, std::span<const std::byte> content, Warni
 }
 
 void McapScan::enter_chunk(std::uint64_t content_at, std::uint64_t length, Warnings& warnings) {
-  chunk_at_ = content_at - kMcapFront;
-  if (std::binary_search(skip_.begin(), skip_.end(), chunk_at_)) return;
+  if (!enters(content_at - kMcapFront)) return;
   const auto head = read_mcap_chunk(
       file_.view(content_at, static_cast<std::size_t>(std::min<std::uint64_t>(length, 256))));
   if (!head) return;  // cut off in the front
   const std::uint64_t packed_here = std::min(head->packed, length - head->bytes);
-  const std::string method = head->compression.empty() ? "none" : printable(head->compression, 40);
-  if (packed_with_.find(method) == std::string::npos)
-    packed_with_ += (packed_with_.empty() ? "" : ", ") + method;
-  if (std::max(head->unpacked, head->packed) > kLargestChunk)
-    throw Error({ErrorKind::input,
-                 "E0443",
-                 fmt::format("{} (byte {})", file_.path(), chunk_at_),
-                 fmt::format("a chunk of {} bytes, more than the limit of {}",
-                             std::max(head->unpacked, head->packed),
-                             kLargestChunk),
-                 "",
-                 "write it again with smaller chunks (mcap filter)"});
-  if (const std::string why = why_not_packed(head->compression); !why.empty())
-    throw Error({ErrorKind::input,
-                 "E0442",
-                 fmt::format("{} (byte {})", file_.path(), chunk_at_),
-                 why,
-                 "",
-                 "write it again without (mcap decompress)"});
+  note_packing(
+      head->compression, std::max(head->unpacked, head->packed), "mcap filter", "mcap decompress");
   const auto packed = file_.view(content_at + head->bytes, static_cast<std::size_t>(packed_here));
   unpack_chunk(*head, packed, packed_here == head->packed, warnings);
 }
@@ -284,10 +347,7 @@ void McapScan::unpack_chunk(const McapChunkFront& front,
                             std::span<const std::byte> packed,
                             bool whole,
                             Warnings& warnings) {
-  const auto broken = [&](const std::string& why) {
-    warnings.add("broken_chunk", kBrokenChunk, fmt::format("byte {}: {}", chunk_at_, why));
-    chunk_ = {};
-  };
+  const auto broken = [&](const std::string& why) { lose_chunk(warnings, kNotAsSaid, why); };
   chunk_ = packed;
   if (!front.compression.empty() && front.compression != "none") {
     const std::string problem = unpack(front.compression, packed, front.unpacked, unpacked_);

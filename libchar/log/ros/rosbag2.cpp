@@ -255,11 +255,11 @@ class Rosbag2Reader final : public TopicReader {
   void add(const Warnings& found, Warnings& warnings) const {
     const std::string name = name_of(parts_[at_].file);
     for (const Warning& one : found.list()) {
-      const std::uint64_t places = one.places.size();
-      for (const std::string& place : one.places)
-        warnings.add(one.code, one.message, place.empty() ? name : name + ", " + place);
+      const std::uint64_t places = one.where.rows.size();
+      for (const std::string& place : one.where.rows)
+        warnings.add(one.code, one.sentence, place.empty() ? name : name + ", " + place);
       if (one.count > places)
-        warnings.add(one.code, one.message, places == 0 ? name : "", one.count - places);
+        warnings.add(one.code, one.sentence, places == 0 ? name : "", one.count - places);
     }
   }
 
@@ -282,29 +282,18 @@ class Rosbag2Reader final : public TopicReader {
   std::uint64_t bytes_done_ = 0;
 };
 
-std::unique_ptr<TopicReader> open_rosbag2(const std::string& path, const ReadOptions& options) {
-  return std::make_unique<Rosbag2Reader>(path, options);
-}
-
-bool sniff_rosbag2(const std::string& path, std::string_view) {
-  return is_rosbag2(path);
-}
-
 }  // namespace
 
 Format rosbag2_format() {
   Format row;
   row.about.name = "rosbag2";
   row.about.title = "ROS 2 recording";
+  row.about.topics = true;
+  row.topics = open_topics<Rosbag2Reader>;
   row.about.brief = "folders of rosbag2";
   row.about.otherwise = "a folder of rosbag2, or its `metadata.yaml`";
-  row.about.names = "yes";
   row.about.units = "of ROS types";
-  row.about.rate = "by stamps";
-  row.about.start = "yes";
-  row.about.topics = true;
-  row.sniff = sniff_rosbag2;
-  row.topics = open_rosbag2;
+  row.sniff = [](const std::string& path, std::string_view) { return is_rosbag2(path); };
   return row;
 }
 

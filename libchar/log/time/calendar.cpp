@@ -5,7 +5,6 @@
 
 #include <array>
 #include <chrono>
-#include <string>
 
 #include "libchar/core/text/text.hpp"
 

@@ -11,7 +11,6 @@
 #include "libchar/core/units.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/time/time_column.hpp"
-#include "libchar/log/time/time_names.hpp"
 
 namespace libchar {
 namespace {

@@ -1,14 +1,13 @@
 // CSV as this project writes it: comma, point, one header line NAME[UNIT], shortest numbers that
 // read back to the same bits.
 
-#include "libchar/log/write/csv.hpp"
-
 #include <charconv>
 #include <cmath>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/text/csv_cell.hpp"
+#include "libchar/log/write/writers.hpp"
 
 namespace libchar {
 namespace {

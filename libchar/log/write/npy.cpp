@@ -1,8 +1,6 @@
 // .npy: a structured array with one field a channel when the channels have names of their own, else
 // a plain 2-D array.
 
-#include "libchar/log/write/npy.hpp"
-
 #include <fmt/format.h>
 
 #include "libchar/core/text/decimal.hpp"
@@ -10,6 +8,7 @@
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/write/value_writer.hpp"
+#include "libchar/log/write/writers.hpp"
 
 namespace libchar {
 namespace {

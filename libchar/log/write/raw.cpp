@@ -1,7 +1,5 @@
 // Raw binary with a JSON sidecar: the format that keeps everything (names, units, rate, start).
 
-#include "libchar/log/write/raw.hpp"
-
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -11,6 +9,7 @@
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/write/value_writer.hpp"
+#include "libchar/log/write/writers.hpp"
 
 namespace libchar {
 namespace {

@@ -125,7 +125,7 @@ std::vector<AlgorithmRemark> remarks_of(const ReplayResult& r) {
   std::vector<AlgorithmRemark> out;
   for (const AlgorithmResult& a : r.algorithms)
     for (const Warning& w : a.remarks.list())
-      out.push_back({w.message.starts_with(a.label) ? "" : a.label, w.message, w.count});
+      out.push_back({w.sentence.starts_with(a.label) ? "" : a.label, w.sentence, w.count});
   return out;
 }
 

@@ -12,14 +12,13 @@ struct SummaryOfChannel {
   std::string name;
   Rating rating = Rating::good;
   std::string sentence;
-  std::vector<std::string> spoils;
+  std::vector<Finding> findings;
 };
 
 struct QualityOfChannel {
   DescribedChannel described;
   DigitalFaults digital;
   std::vector<SpectralLine> lines;
-  std::vector<std::string> problems;
 };
 
 const Fields<SummaryOfChannel>& summary_fields();

@@ -36,13 +36,14 @@ std::string recordings_part(const FleetReport& report,
                             const std::string& title) {
   if (recordings.empty()) return "";
   Table out("device|log|why");
-  for (const std::size_t r : recordings) {
+  for (const std::size_t r : first_of(recordings, kFailedOnPage)) {
     const DeviceRecord& one = report.records[r];
     out.add({one.device, one.log, one.problem});
   }
   return folded(
       html_text(title),
-      html_table(out, {.css = "many", .most = kFailedOnPage, .rest = "the list of devices below"}));
+      html_table(out,
+                 {.css = "many", .of = recordings.size(), .rest = "the list of devices below"}));
 }
 
 std::string failed_part(const FleetReport& report) {

@@ -144,14 +144,16 @@ std::string channel_part(const RunsReport& report, const PooledChannel& c) {
   return "<section class=\"channel\">\n<h2>" + html_text(c.channel.name) +
          " <span class=\"unit\">" + html_text(c.channel.unit) + "</span></h2>\n" +
          bullet_list(c.sentences, "plain") + html_table(pooled, {.css = "many"}) +
-         bullet_list(c.fit.sentences, "cautions") + curves_of(report, c) +
+         findings_list(c.fit.findings) + curves_of(report, c) +
          folded("The runs one by one", html_table(runs_table(report, c))) + "</section>\n";
 }
 
 SensorModel model_of(const RunsReport& report, const PooledChannel& c) {
   const ChannelResult& first = channel_in(report, c, c.runs[0].run);
-  SensorModel model = sensor_model_from(
-      c.channel, report.runs[c.runs[0].run].log, first.quality, c.fit, first.allan);
+  ChannelResult pooled = first;
+  pooled.channel = c.channel;
+  pooled.fit = c.fit;
+  SensorModel model = sensor_model_from(pooled, report.runs[c.runs[0].run].log);
   model.obtained = fmt::format("fit of {} recordings together", c.runs.size());
   // One hash is that of one file.
   model.recording_file =
@@ -205,7 +207,7 @@ std::string runs_html(const RunsReport& report) {
 std::string runs_text(const RunsReport& report, const TextLook& look) {
   std::string out = printable(report.pooled->verdict) + "\n";
   for (const PooledChannel& c : report.pooled->channels) {
-    out += "\n" + fit_text(c.channel, c.fit, look);
+    out += "\n" + fit_text(c.channel, c.fit, look) + findings_text(c.fit.findings, 5, look.colours);
     for (const std::string& sentence : c.sentences) out += "  " + printable(sentence) + "\n";
   }
   for (const std::string& problem : report.pooled->problems)

@@ -10,7 +10,7 @@
 #include "libchar/model/noise_limits.hpp"
 #include "libchar/replay/fusion_file.hpp"
 #include "libchar/report/detail/report_rows.hpp"
-#include "libchar/scene/text/scene_schema.hpp"
+#include "libchar/scene/text/scene_writer.hpp"
 
 namespace libchar {
 namespace {

@@ -38,7 +38,7 @@ std::vector<std::string> warning_words(const ReplayView& view) {
   std::vector<std::string> out;
   const auto add = [&](const std::string& of, const Warnings& warnings) {
     for (const Warning& w : warnings.list())
-      out.push_back(of + w.message + (w.count > 1 ? fmt::format(" ({} ×)", w.count) : ""));
+      out.push_back(of + w.sentence + (w.count > 1 ? fmt::format(" ({} ×)", w.count) : ""));
   };
   add("", view.result->warnings);
   for (const LogInfo& log : view.result->logs) add(log.file + ": ", log.warnings);

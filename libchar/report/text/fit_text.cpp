@@ -43,7 +43,6 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook
                         fit.second_opinion->sentence);
   for (const Remedy& remedy : fit.remedies)
     text += fmt::format("  remedy {}: {} – because {}\n", remedy.kind, remedy.action, remedy.alarm);
-  for (const std::string& sentence : fit.sentences) text += fmt::format("  {}\n", sentence);
   return text;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "libchar/core/table/table.hpp"
-#include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
@@ -81,69 +80,31 @@ Table topic_table(const LogInfo& info) {
   return out;
 }
 
-// A remark as words and the numbers between them.
-struct RemarkParts {
-  std::vector<std::string> words, numbers;
-};
-
-RemarkParts parts_of(const std::string& remark) {
-  RemarkParts out{{""}, {}};
-  for (std::size_t i = 0; i < remark.size();) {
-    std::size_t end = i;
-    while (end < remark.size() &&
-           std::string_view("0123456789.+-e").find(remark[end]) != std::string_view::npos)
-      ++end;
-    std::string number = remark.substr(i, end - i);
-    while (!number.empty() && !parse_double(number)) number.pop_back();
-    if (number.empty()) {
-      out.words.back() += remark[i++];
-      continue;
-    }
-    out.numbers.push_back(number);
-    out.words.emplace_back();
-    i += number.size();
-  }
-  return out;
-}
-
-// The same remark on several channels, its numbers as ranges.
-struct RemarkGroup {
-  std::vector<std::string> channels;
-  std::vector<std::string> words, least, most;
-
-  void add(const std::string& channel, const RemarkParts& parts) {
-    channels.push_back(channel);
-    for (std::size_t k = 0; k < parts.numbers.size(); ++k) {
-      const double value = *parse_double(parts.numbers[k]);
-      if (value < *parse_double(least[k])) least[k] = parts.numbers[k];
-      if (value > *parse_double(most[k])) most[k] = parts.numbers[k];
-    }
-  }
-  std::string line() const {
-    std::string text = "  " + first_names(channels) + ": " + words[0];
-    for (std::size_t k = 0; k < least.size(); ++k)
-      text += (least[k] == most[k] ? least[k] : least[k] + "…" + most[k]) + words[k + 1];
-    return text + "\n";
-  }
-};
-
-// One line a kind of remark, not one a channel.
+// One line for each kind of finding, not one for each channel: what the first says, and who is alike.
 std::string remarks(const Inspection& inspection) {
-  std::vector<RemarkGroup> groups;
+  struct Alike {
+    const Finding* first;
+    std::vector<std::string> channels;
+    bool same = true;
+  };
+  std::vector<Alike> kinds;
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
-    for (const std::string& suggestion : inspection.quality[c].suggestions) {
-      const RemarkParts parts = parts_of(printable(suggestion));
-      const auto known = std::find_if(groups.begin(), groups.end(), [&](const RemarkGroup& group) {
-        return group.words == parts.words;
-      });
-      RemarkGroup& group =
-          known != groups.end()
-              ? *known
-              : groups.emplace_back(RemarkGroup{{}, parts.words, parts.numbers, parts.numbers});
-      group.add(printable(inspection.info.channels[c].name, 40), parts);
+    for (const Finding& one : inspection.quality[c].findings) {
+      auto kind = std::find_if(
+          kinds.begin(), kinds.end(), [&](const Alike& k) { return k.first->code == one.code; });
+      if (kind == kinds.end()) kind = kinds.insert(kinds.end(), {&one, {}});
+      kind->same = kind->same && kind->first->sentence == one.sentence;
+      kind->channels.push_back(printable(inspection.info.channels[c].name, 40));
     }
   std::string text;
-  for (const RemarkGroup& group : groups) text += group.line();
+  for (const Alike& kind : kinds) {
+    const std::vector<std::string> others(kind.channels.begin() + 1, kind.channels.end());
+    const std::string who = kind.same ? first_names(kind.channels) : kind.channels[0];
+    text += "  " + who + ": " + printable(kind.first->sentence);
+    if (!kind.same) text += " (alike: " + first_names(others) + ")";
+    for (const Finding::Help& help : kind.first->help) text += "; " + printable(help.sentence);
+    text += "\n";
+  }
   return text;
 }
 

@@ -3,7 +3,6 @@
 // equations): tables that depend on the length alone, and memory to work in, both shared by all who
 // transform halves of that length.
 
-#include <complex>
 #include <cstddef>
 #include <map>
 #include <memory>

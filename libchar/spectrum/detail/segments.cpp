@@ -390,9 +390,8 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
   const bool root = options_.scaling == Scaling::lsd || options_.scaling == Scaling::ls;
   const double scale = 1 / (count * (density ? rate_hz * energy : amplitude * amplitude));
   const auto put = [&](std::size_t k, double sign) {
-    const bool edge =
-        k == 0 ||
-        2 * k == n;  // DC and Nyquist: real, one degree of freedom, and no other side to add
+    // DC and Nyquist: real, one degree of freedom, and no other side to add
+    const bool edge = k == 0 || 2 * k == n;
     const double power = power_[k] * scale * (options_.sides == Sides::one && !edge ? 2 : 1);
     out.frequency_hz.push_back(sign * static_cast<double>(k) * rate_hz / static_cast<double>(n));
     out.value.push_back(root ? std::sqrt(power) : power);

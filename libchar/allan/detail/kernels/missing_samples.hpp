@@ -2,7 +2,6 @@
 // The Allan variance of a record with missing samples: what its terms sum up to, and what is taken
 // off for what is missing.
 
-#include <cstdint>
 #include <limits>
 #include <vector>
 

@@ -14,12 +14,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/band/scoring.hpp"
-#include "libchar/fit/detail/record/gauss_markov_means.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
 
 namespace libchar {
 namespace {

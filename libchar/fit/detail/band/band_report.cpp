@@ -8,8 +8,7 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
-#include "libchar/fit/detail/record/flicker_phase_means.hpp"
-#include "libchar/fit/detail/record/gauss_markov_means.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
 
 namespace libchar {
 namespace {

@@ -15,7 +15,6 @@
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/curve/polish.hpp"
-#include "libchar/fit/detail/curve/solver_settings.hpp"
 
 namespace libchar {
 namespace {

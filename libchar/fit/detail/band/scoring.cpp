@@ -6,7 +6,6 @@
 #include "libchar/fit/detail/band/scoring.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/dense.hpp"

@@ -4,17 +4,39 @@
 // Parameters are ln theta of the terms that scoring left positive, and the shape's coefficients: no bounds, and the start is the
 // optimum to within 1e-10, so that one or two Levenberg-Marquardt steps give the last digits.
 // (theta = c^2, or ln theta from far away, stalls at a bound or misses the optimum.)
+
 #include "libchar/fit/detail/curve/polish.hpp"
 
 #include <ceres/ceres.h>
 
 #include <cmath>
+#include <limits>
 
 #include "libchar/core/process/silent_glog.hpp"
 #include "libchar/core/process/work.hpp"
-#include "libchar/fit/detail/curve/solver_settings.hpp"
 
 namespace libchar {
+
+ceres::Solver::Options exact_solver_options(int most_iterations) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.num_threads = 1;  // more give other bits
+  options.logging_type = ceres::SILENT;
+  options.minimizer_progress_to_stdout = false;
+  options.max_num_iterations = most_iterations;
+  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance =
+      std::numeric_limits<double>::epsilon();
+  return options;
+}
+
+ceres::Covariance::Options exact_covariance_options() {
+  ceres::Covariance::Options options;
+  options.algorithm_type = ceres::DENSE_SVD;
+  options.null_space_rank = -1;
+  options.num_threads = 1;
+  return options;
+}
+
 namespace {
 
 class BinResiduals final : public ceres::CostFunction {

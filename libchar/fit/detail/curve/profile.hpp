@@ -5,6 +5,13 @@
 
 namespace libchar {
 
+// Intervals of a coefficient that is reported because its likelihood ratio passed a threshold.
+
+/// Rise of -2 ln L at which the lower 95 % limit of a term stands when it is reported only above `threshold` and was
+/// found with `likelihood_ratio`: above the chi-square quantile 3.84, which it approaches far from the threshold.
+/// Where it exceeds the likelihood ratio itself, the interval begins at zero.
+double selected_rise(double likelihood_ratio, double threshold);
+
 inline constexpr double kTwoSided95 = 3.841458820694124;  ///< chi-square, one degree of freedom
 inline constexpr double kOneSided95 = 2.705543454095404;
 

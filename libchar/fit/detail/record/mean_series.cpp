@@ -5,7 +5,6 @@
 #include "libchar/fit/detail/record/mean_series.hpp"
 
 #include <cmath>
-#include <utility>
 
 namespace libchar {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libchar/fit/detail/record/record_powers.hpp"
-#include "libchar/fit/record/mean_powers.hpp"
+#include "libchar/fit/record/pooled_sums.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {

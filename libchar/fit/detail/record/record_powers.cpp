@@ -1,12 +1,159 @@
 #include "libchar/fit/detail/record/record_powers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
+
+namespace {
+
+constexpr std::uint64_t kSingleBins = 24, kBinsPerOctave = 8;
+constexpr std::uint64_t kExactBelow =
+    4096;  ///< shorter records get the exact flicker means (beyond, the limit is good to 6e-5)
+
+/// Share of the events' energy below which the noise beside it is not looked at.
+constexpr double kLeastNoise = 0.05;
+
+/// First coefficient of the bin after the one that starts at k.
+std::uint64_t next_edge(std::uint64_t k) {
+  if (k < kSingleBins) return k + 1;
+  const double position = std::log2(static_cast<double>(k) / kSingleBins) * kBinsPerOctave;
+  const double edge = kSingleBins * std::exp2((std::floor(position + 1e-9) + 1) / kBinsPerOctave);
+  return std::max(k + 1, static_cast<std::uint64_t>(std::llround(edge)));
+}
+
+using Unit = std::array<double, kTerms>;
+
+/// Adds `weight` times the mean of unit(k), k = lo..hi-1, to the sum: by Gauss-Legendre where it is
+/// smooth and wide.
+template <typename UnitAt>
+void add_run(
+    std::uint64_t lo, std::uint64_t hi, double weight, bool smooth, UnitAt&& unit_at, Unit& sum) {
+  static constexpr std::array<double, 4> node = {
+      0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+  static constexpr std::array<double, 4> share = {
+      0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+  const auto add = [&](double k, double w) {
+    const Unit unit = unit_at(k);
+    for (std::size_t i = 0; i < kTerms; ++i) sum[i] += w * unit[i];
+  };
+  if (!smooth || hi - lo <= 64) {
+    const double each = weight / static_cast<double>(hi - lo);
+    for (std::uint64_t k = lo; k < hi; ++k) add(static_cast<double>(k), each);
+    return;
+  }
+  const double middle = 0.5 * static_cast<double>(lo + hi - 1),
+               half = 0.5 * static_cast<double>(hi - lo);
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    // An irrational shift keeps the nodes off the integers, where the ramp's odd-even pattern
+    // would bite.
+    add(middle + half * node[i] + 1e-7, 0.5 * share[i] * weight);
+    add(middle - half * node[i] + 1e-7, 0.5 * share[i] * weight);
+  }
+}
+
+/// Mean of unit(k) over the `kept` coefficients of lo..hi-1, run by run of those that were not
+/// clipped.
+template <typename UnitAt>
+Unit average_unit(std::uint64_t lo,
+                  std::uint64_t hi,
+                  const std::vector<char>& clipped,
+                  std::uint64_t first,
+                  std::uint64_t kept,
+                  bool smooth,
+                  UnitAt&& unit_at) {
+  Unit sum{};
+  const auto is_clipped = [&](std::uint64_t k) {
+    return !clipped.empty() && clipped[k - first] != 0;
+  };
+  for (std::uint64_t from = lo, to = lo; from < hi; from = to + 1) {
+    for (to = from; to < hi && !is_clipped(to);) ++to;
+    if (to > from)
+      add_run(from,
+              to,
+              static_cast<double>(to - from) / static_cast<double>(kept),
+              smooth,
+              unit_at,
+              sum);
+  }
+  return sum;
+}
+
+template <typename UnitAt>
+void append_bins_of(const PooledPower& power,
+                    double rate_hz,
+                    const std::vector<char>& clipped,
+                    bool smooth,
+                    UnitAt&& unit_at,
+                    std::vector<PowerBin>& bins) {
+  const double step_hz =
+      rate_hz / static_cast<double>(power.spacing) / (2 * static_cast<double>(power.length));
+  const std::uint64_t end = power.first + power.mean.size();
+  for (std::uint64_t lo = power.first, hi = 0; lo < end; lo = hi) {
+    hi = std::min(end, next_edge(lo));
+    if (end - hi < (hi - lo) / 4) hi = end;  // no sliver at the end
+    double sum = 0, of_events = 0;
+    std::uint64_t kept = 0;
+    for (std::uint64_t k = lo; k < hi; ++k) {
+      if (!clipped.empty() && clipped[k - power.first] != 0) continue;
+      sum += power.mean[k - power.first];
+      if (!power.of_events.empty()) of_events += power.of_events[k - power.first];
+      ++kept;
+    }
+    const double noise = sum - of_events;
+    const bool loud = of_events > 0 && !(noise > kLeastNoise * of_events);
+    if (kept == 0 || loud) continue;
+    PowerBin bin;
+    bin.low_hz = (static_cast<double>(lo) - 0.5) * step_hz;
+    bin.high_hz = (static_cast<double>(hi) - 0.5) * step_hz;
+    bin.frequency_hz =
+        hi - lo == 1 ? static_cast<double>(lo) * step_hz : std::sqrt(bin.low_hz * bin.high_hz);
+    bin.energy = noise / static_cast<double>(kept);
+    // sum (n_k + e_k)² - e_k²: the variance of n_k² is 2 P², that of 2 n_k e_k is 4 P e_k².
+    const double wider = of_events > 0 ? 1 + 2 * of_events / noise : 1;
+    bin.dof = static_cast<double>(kept * power.pooled) / wider;
+    bin.first = lo;
+    bin.end = hi;
+    bin.length = power.length;
+    bin.spacing = power.spacing;
+    bin.unit = average_unit(lo, hi, clipped, power.first, kept, smooth, unit_at);
+    bins.push_back(bin);
+  }
+}
+
+}  // namespace
+
+void append_power_bins(const PooledPower& power,
+                       double rate_hz,
+                       const std::vector<char>& clipped,
+                       std::vector<PowerBin>& bins) {
+  const double dt_s = 1 / rate_hz;
+  if (power.spacing > 1 || power.length <= kExactBelow) {
+    const BlockMeanDct exact(power.length, power.spacing, dt_s);
+    append_bins_of(
+        power,
+        rate_hz,
+        clipped,
+        false,
+        [&](double k) { return exact.mean(static_cast<std::uint64_t>(k)); },
+        bins);
+  } else {
+    append_bins_of(
+        power,
+        rate_hz,
+        clipped,
+        true,
+        [&](double k) { return dct_mean(k, power.length, dt_s); },
+        bins);
+  }
+}
+
 namespace {
 
 /// Between the last coefficient of a block that is left and the first that is not, per point.

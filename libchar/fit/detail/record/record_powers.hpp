@@ -5,10 +5,19 @@
 #include <span>
 #include <vector>
 
-#include "libchar/fit/detail/record/pooled_power.hpp"
 #include "libchar/fit/record/pooled_sums.hpp"
+#include "libchar/fit/record/power_bins.hpp"
 
 namespace libchar {
+
+// Mean squared DCT-II coefficients of one transform length become logarithmic bins.
+
+/// The logarithmic bins of a power, with their expectations; `clipped`: coefficients to leave out,
+/// none when empty.
+void append_power_bins(const PooledPower& power,
+                       double rate_hz,
+                       const std::vector<char>& clipped,
+                       std::vector<PowerBin>& bins);
 
 inline constexpr std::uint64_t kLeftToMeans =
     16;  ///< coefficients of a block that the series of means covers

@@ -18,7 +18,6 @@
 // there before), the median over the sensors of their z^2 in the last instants says by how much residuals
 // are larger than expected: all z^2 are divided by it (`excess`).
 
-#include <cstdint>
 #include <vector>
 
 #include "libchar/fusion/detail/fault/cusum_bank.hpp"

@@ -1,11 +1,18 @@
 #pragma once
+// The weighted mean where channels see several inputs, or one with different gains: generalized
+// least squares with variances that stay [RV 4.22, corrected: A = H]. Channels whose sample is
+// missing are left out; the factors stand while the same channels are present.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "libchar/fusion/algorithm.hpp"
+
+namespace libchar::fusion {
+
 // X = (H' R^-1 H)^-1 H' R^-1 y with R = diag(v), by orthogonalising R^-1/2 H = Q U: X = U^-1 Q'
 // R^-1/2 y [Aitken 1936]. The normal matrix is never formed; the factors stand until variances or
 // channels change. No trip to the heap after construction.
-
-#include <Eigen/Core>
-
-namespace libchar::fusion {
 
 class GeneralizedLeastSquares {
  public:
@@ -37,6 +44,25 @@ class GeneralizedLeastSquares {
   Eigen::VectorXd root_;                     // 1 / sqrt(v), by position
   const int* index_ = nullptr;
   int m_ = 0;
+};
+
+class GeneralMean {
+ public:
+  /// n rows of r inputs; a noise variance for each channel (all equal: ordinary least squares).
+  GeneralMean(const Eigen::MatrixXd& h, const Eigen::VectorXd& variances);
+  GeneralMean(const GeneralMean&) = delete;
+  GeneralMean& operator=(const GeneralMean&) = delete;
+  Estimate step(const Sample& y);
+  /// n x r; zero for the channels that were missing in the last step.
+  Eigen::MatrixXd weights() const;
+
+ private:
+  bool take_present(const Sample& y);
+
+  GeneralizedLeastSquares gls_;
+  Eigen::VectorXd variances_, residual_;
+  std::vector<int> present_, before_;
+  bool determined_ = false;
 };
 
 }  // namespace libchar::fusion

@@ -22,7 +22,6 @@
 // deviation stays below sqrt(a / lambda).
 
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <vector>
 

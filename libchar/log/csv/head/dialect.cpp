@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -12,12 +11,10 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/utf8.hpp"
-#include "libchar/log/csv/head/content.hpp"
 #include "libchar/log/csv/head/delimiter.hpp"
+#include "libchar/log/csv/head/first_lines.hpp"
 #include "libchar/log/csv/head/header.hpp"
 #include "libchar/log/csv/head/sample.hpp"
-#include "libchar/log/csv/head/stated_rate.hpp"
-#include "libchar/log/csv/head/table_start.hpp"
 #include "libchar/log/csv/long_table.hpp"
 #include "libchar/log/csv/rows/number.hpp"
 #include "libchar/log/csv/rows/stamps.hpp"

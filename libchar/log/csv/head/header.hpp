@@ -2,7 +2,6 @@
 // What the cells and comments around a header line mean.
 
 #include <string>
-#include <string_view>
 
 #include "libchar/log/csv/head/dialect.hpp"
 

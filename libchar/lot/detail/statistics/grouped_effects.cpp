@@ -8,7 +8,6 @@
 #include "libchar/lot/detail/statistics/grouped_effects.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/distributions.hpp"

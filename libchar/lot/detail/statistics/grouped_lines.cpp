@@ -8,8 +8,6 @@
 // group do not show and those of all groups together do.
 #include "libchar/lot/detail/statistics/grouped_lines.hpp"
 
-#include <cmath>
-
 #include "libchar/core/not_known.hpp"
 #include "libchar/lot/detail/statistics/within_spread.hpp"
 

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "libchar/lot/detail/member_recordings.hpp"
+#include "libchar/lot/detail/quantity_values.hpp"
 #include "libchar/lot/detail/statistics/grouped_lines.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 

@@ -17,7 +17,11 @@
 namespace libchar {
 namespace {
 
-constexpr PageTable kMany{.css = "many", .most = 200, .rest = "lot.json"};
+constexpr std::size_t kMostRows = 200;
+
+std::string many_rows(const Table& table, std::size_t of) {
+  return html_table(table, {.css = "many", .of = of, .rest = "lot.json"});
+}
 
 /// To a tenth of a degree, without zeros behind it.
 std::string celsius(double t) {
@@ -125,7 +129,7 @@ std::string batch_table(const QuantityLot& q) {
   if (q.batches.empty()) return "";
   const bool logarithm = in_logarithm(q.quantity);
   Table out("batch|mean|spread (sd)|median|counted|not counted");
-  for (const BatchLot& one : q.batches)
+  for (const BatchLot& one : first_of(q.batches, kMostRows))
     out.add({batch_title(one.batch),
              mean_text(one.figures, q.unit) +
                  (one.in_figures > one.counts.counted ? ", of " + count_text(one.in_figures) : ""),
@@ -135,7 +139,7 @@ std::string batch_table(const QuantityLot& q) {
              std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit,
              counted_text(one.counts),
              not_counted(one.counts)});
-  return folded(fmt::format("{} batches", q.batches.size()), html_table(out, kMany));
+  return folded(fmt::format("{} batches", q.batches.size()), many_rows(out, q.batches.size()));
 }
 
 std::string range_text(const Interval& range_c) {
@@ -187,14 +191,15 @@ std::string reference_sentence(const QuantityLot& q) {
 
 std::string slope_table(const QuantityLot& q, std::span<const DeviceRecord> records) {
   if (!q.temperatures || q.temperatures->slopes.empty()) return "";
+  const std::vector<DeviceSlope>& slopes = q.temperatures->slopes;
   Table out("device|coefficient|recordings|at");
-  for (const DeviceSlope& slope : q.temperatures->slopes)
+  for (const DeviceSlope& slope : first_of(slopes, kMostRows))
     out.add({records[slope.recording].device,
              number_text(slope.value) + " " + brackets(slope.ci95) + " " + q.unit,
              count_text(slope.recordings),
              range_text(slope.temperature_c)});
-  return folded(fmt::format("Coefficients of {}", plural(out.rows.size(), "device")),
-                html_table(out, kMany));
+  return folded(fmt::format("Coefficients of {}", plural(slopes.size(), "device")),
+                many_rows(out, slopes.size()));
 }
 
 /// What the mean is worth where devices are missing in it.

@@ -213,7 +213,13 @@ std::string curve_points(const ChannelView& view) {
   const std::string& unit = view.shown_unit;
   Table out("τ, s|deviation|68 % interval|95 % interval|degrees of freedom|terms|");
   if (!unit.empty()) out.columns[1].head += ", " + unit;
-  for (const AllanPoint& p : c.allan.points) {
+  constexpr std::size_t kMostRows = 200;
+  const std::size_t stride = (c.allan.points.size() + kMostRows - 1) / kMostRows;
+  if (stride > 1)
+    out.note =
+        fmt::format("Every {}th point; all of them are in curves.csv and report.json.", stride);
+  for (std::size_t i = 0; i < c.allan.points.size(); i += stride) {
+    const AllanPoint& p = c.allan.points[i];
     const bool known = p.edf > 0;
     out.add({number_text(p.tau_s, 6),
              number_text(p.deviation, 5),
@@ -223,10 +229,9 @@ std::string curve_points(const ChannelView& view) {
              count_text(p.terms),
              p.reliable ? "" : "unreliable"});
   }
-  const PageTable look{.css = "points", .most = 200, .rest = "curves.csv and report.json"};
   return folded(
       fmt::format("Points of the {} curve ({})", name_of(c.allan.type), c.allan.points.size()),
-      html_table(out, look) + bullet_list(c.allan.notes, "plain") +
+      html_table(out, {.css = "points"}) + bullet_list(c.allan.notes, "plain") +
           bullet_list(c.spectrum.notes, "plain"));
 }
 
@@ -247,8 +252,7 @@ std::string channel_section(const ChannelView& view,
       view.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
                         : " <span class=\"unit\">" + html_text(view.shown_unit) + "</span>");
   out += "<p class=\"sentence\">" + html_text(view.summary) + "</p>\n";
-  out += bullet_list(view.cautions, "cautions") + bullet_list(view.beside_terms, "plain");
-  if (c.fit) out += bullet_list(c.fit->sentences, "plain");
+  out += findings_list(view.judgement.findings) + bullet_list(view.beside_terms, "plain");
   if (layout.trace) out += trace_plot(view, index, log);
   out += curve_plots(view, index);
   if (c.fit)
@@ -256,7 +260,7 @@ std::string channel_section(const ChannelView& view,
   if (c.verification) out += verification_section(view);
   out += folded("Data quality",
                 html_table(quality_table(view), {.css = "facts"}) + lines_table(view) +
-                    bullet_list(c.quality.suggestions, "plain"));
+                    findings_list(c.quality.findings));
   return out + consumers(view, rate_hz) + curve_points(view) + "</details>\n";
 }
 

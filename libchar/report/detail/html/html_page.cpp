@@ -112,7 +112,10 @@ std::string warnings_part(const Warnings& warnings) {
   Table out("kind|what|count|first places");
   out.title = "Repairs and warnings";
   for (const Warning& w : warnings.list())
-    out.add({w.code, w.message, count_text(w.count), fmt::format("{}", fmt::join(w.places, ", "))});
+    out.add({w.code,
+             w.sentence,
+             count_text(w.count),
+             fmt::format("{}", fmt::join(w.where.rows, ", "))});
   return out.rows.empty() ? "<h3>" + out.title + "</h3>\n<p>None.</p>\n" : html_table(out);
 }
 

@@ -109,8 +109,8 @@ std::string html_table(const Table& table, const PageTable& look) {
   Shown shown;
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if ((table.columns[c].doors & Table::kPage) != 0 && table.says_anything(c)) shown.push_back(c);
-  const std::size_t count = table.rows.size();
-  const std::size_t rows = look.most > 0 ? std::min(look.most, count) : count;
+  const std::size_t count = std::max(look.of, table.rows.size());
+  const std::size_t rows = std::min(look.most > 0 ? look.most : count, table.rows.size());
   std::string out = table.title.empty() ? "" : "<h3>" + html_text(table.title) + "</h3>\n";
   out += "<div class=\"wide\"><table" +
          (*look.css == 0 ? "" : fmt::format(" class=\"{}\"", look.css)) + ">\n" +
@@ -146,6 +146,31 @@ std::string rating_badge(Rating rating) {
                      name_of(rating),
                      rating_sign(rating),
                      rating_word(rating));
+}
+
+namespace {
+
+std::string finding_item(const Finding& one) {
+  std::string out = fmt::format("<li class=\"{}\" title=\"{}\">", name_of(one.severity), one.code) +
+                    html_text(one.sentence);
+  for (const Finding::Help& help : one.help)
+    out += " <span class=\"help\">" + html_text(help.sentence) + "</span>";
+  return out + "</li>\n";
+}
+
+}  // namespace
+
+std::string findings_list(const std::vector<Finding>& findings) {
+  constexpr std::size_t kShown = 5;
+  std::string shown, rest;
+  for (std::size_t i = 0; i < findings.size(); ++i)
+    (i < kShown ? shown : rest) += finding_item(findings[i]);
+  if (shown.empty()) return "";
+  const auto list = [](const std::string& items) {
+    return "<ul class=\"findings\">\n" + items + "</ul>\n";
+  };
+  return list(shown) +
+         (rest.empty() ? "" : folded(fmt::format("{} more", findings.size() - kShown), list(rest)));
 }
 
 std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {

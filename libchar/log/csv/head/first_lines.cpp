@@ -1,0 +1,323 @@
+#include "libchar/log/csv/head/first_lines.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "libchar/core/error.hpp"
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/log/csv/line.hpp"
+#include "libchar/log/reading_fields.hpp"
+#include "libchar/log/time/calendar.hpp"
+
+namespace libchar::csv {
+
+namespace {
+
+constexpr std::string_view kBetween = " \t:=,;\"'()[]";
+
+// The key in front of the first number of a line, its letters only, and what stands behind.
+struct Statement {
+  std::string key;
+  std::optional<double> number;
+  std::string_view unit;
+};
+
+Statement statement_in(std::string_view lower) {
+  Statement out;
+  const std::size_t word = lower.find("rate");
+  const std::size_t at =
+      lower.find_first_of("0123456789", word == std::string_view::npos ? 0 : word);
+  if (at == std::string_view::npos) return out;
+  for (const char c : lower.substr(0, at))
+    if (c >= 'a' && c <= 'z') out.key += c;
+  std::size_t end = at;
+  while (end < lower.size() &&
+         ((lower[end] >= '0' && lower[end] <= '9') || lower[end] == '.' || lower[end] == '+' ||
+          lower[end] == '-' ||
+          (lower[end] == 'e' && end + 1 < lower.size() &&
+           std::string_view("+-0123456789").find(lower[end + 1]) != std::string_view::npos)))
+    ++end;
+  std::string text(lower.substr(at, end - at));
+  while (!text.empty() && (text.back() == '.' || text.back() == '-')) text.pop_back();
+  if (end < lower.size() && lower[end] == ',' && end + 1 < lower.size() && lower[end + 1] >= '0' &&
+      lower[end + 1] <= '9' && text.find('.') == std::string::npos &&
+      lower.substr(0, at).find(',') == std::string_view::npos) {  // a decimal comma
+    const std::size_t stop = std::min(lower.find_first_not_of("0123456789", end + 1), lower.size());
+    text += "." + std::string(lower.substr(end + 1, stop - end - 1));
+    end = stop;
+  }
+  out.number = parse_double(text);
+  const std::size_t unit = lower.find_first_not_of(kBetween, end);
+  if (unit != std::string_view::npos) {
+    const std::size_t stop = std::min(lower.find_first_of(kBetween, unit), lower.size());
+    out.unit = lower.substr(unit, stop - unit);
+  }
+  return out;
+}
+
+template <std::size_t N>
+bool ends_with_any(std::string_view key, const std::array<std::string_view, N>& ends) {
+  return std::any_of(
+      ends.begin(), ends.end(), [&](std::string_view end) { return key.ends_with(end); });
+}
+
+double hertz_of(const Statement& said) {
+  static constexpr std::array<std::string_view, 16> kKeys = {"samplerate",
+                                                             "samplingrate",
+                                                             "samplesrate",
+                                                             "outputrate",
+                                                             "updaterate",
+                                                             "acquisitionrate",
+                                                             "scanrate",
+                                                             "datarate",
+                                                             "samplingfrequency",
+                                                             "samplefrequency",
+                                                             "samplefreq",
+                                                             "samplingfreq",
+                                                             "loggingrate",
+                                                             "recordingrate",
+                                                             "imurate",
+                                                             "odr"};
+  const bool rate =
+      said.key.find("rate") != std::string::npos || said.key.find("frequency") != std::string::npos;
+  const double factor = said.unit.starts_with("khz") ? 1e3 : said.unit.starts_with("mhz") ? 1e6 : 1;
+  const bool hertz = said.unit.starts_with("hz") || said.unit.starts_with("khz") ||
+                     said.unit.starts_with("mhz") || said.unit.starts_with("sps") ||
+                     said.unit.starts_with("samples/s");
+  if (rate && hertz && said.key.find("baud") == std::string::npos) return *said.number * factor;
+  if (hertz || said.unit.empty() || !ends_with_any(said.key, std::array<std::string_view, 1>{"hz"}))
+    return (hertz || said.unit.empty()) && ends_with_any(said.key, kKeys) ? *said.number * factor
+                                                                          : 0;
+  std::string_view key = said.key;  // "Sample Rate (Hz)": 100
+  key.remove_suffix(2);
+  const double kilo = key.ends_with("k") ? 1e3 : 1;
+  if (kilo > 1) key.remove_suffix(1);
+  return ends_with_any(key, kKeys) ? *said.number * kilo : 0;
+}
+
+double interval_of(const Statement& said) {
+  static constexpr std::array<std::string_view, 9> kKeys = {"sampleinterval",
+                                                            "samplinginterval",
+                                                            "sampleperiod",
+                                                            "samplingperiod",
+                                                            "deltax",
+                                                            "timestep",
+                                                            "sampletime",
+                                                            "samplingtime",
+                                                            "xincrement"};
+  std::string_view key = said.key, unit = said.unit;
+  double factor = 1;
+  if (unit == "ms") factor = 1e-3;
+  if (unit == "us" || unit == "µs") factor = 1e-6;
+  if (unit == "ns") factor = 1e-9;
+  return ends_with_any(key, kKeys) ? *said.number * factor : 0;
+}
+
+}  // namespace
+
+std::optional<double> stated_rate_hz(std::string_view line) {
+  const std::string lower = ascii_lower(line);
+  const Statement said = statement_in(lower);
+  if (!said.number || said.key.empty()) return std::nullopt;
+  double rate = hertz_of(said);
+  if (rate == 0)
+    if (const double interval = interval_of(said); interval > 0) rate = 1 / interval;
+  if (!(rate >= kRates.lowest && rate <= kRates.highest)) return std::nullopt;
+  return rate;
+}
+
+namespace {
+
+// Text has next to no control characters; NUL bytes are left to the row parser, which knows logs
+// that a power failure cut.
+void refuse_binary(std::string_view head, const std::string& file) {
+  std::size_t controls = 0, others = 0, first = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(head.size(), 4096); ++i) {
+    const auto byte = static_cast<unsigned char>(head[i]);
+    if (byte == 0) continue;
+    const bool control =
+        byte < 0x20 && std::string_view("\t\n\v\f\r\x1A").find(head[i]) == std::string_view::npos;
+    if (control && controls++ == 0) first = i;
+    ++others;
+  }
+  if (controls < 2 || controls * 50 < others) return;
+  std::size_t line = 1, column = 1;
+  for (std::size_t i = 0; i < first; ++i, ++column)
+    if (head[i] == '\n') ++line, column = 0;
+  throw Error(
+      {ErrorKind::input,
+       "E0301",
+       at(file, line, column, first),
+       fmt::format("content is binary, not text: {} control characters in the first {} bytes",
+                   controls,
+                   std::min<std::size_t>(head.size(), 4096)),
+       "",
+       "`format` raw with a sidecar reads raw binary (docs: raw binary)"});
+}
+
+}  // namespace
+
+void refuse_other_content(std::string_view head, const std::string& file) {
+  const auto begins = [&](std::string_view magic) { return head.substr(0, magic.size()) == magic; };
+  const char* what = nullptr;
+  const char* hint = "";
+  if (head.empty())
+    throw Error({ErrorKind::input, "E0322", at(file, 1, 1, 0), "the file is empty", "", ""});
+  if (begins("\x93NUMPY"))
+    what = "content is a NumPy array (NPY), not CSV", hint = "read it with `format` npy";
+  else if (begins("\x1F\x8B"))
+    what = "content is compressed (gzip), not CSV", hint = "unpack it first: gunzip";
+  else if (begins("PK\x03\x04"))
+    what = "content is a ZIP archive (XLSX or NPZ?), not CSV",
+    hint = "unpack it, or export it as CSV";
+  else if (begins("\x28\xB5\x2F\xFD"))
+    what = "content is compressed (zstd), not CSV", hint = "unpack it first: unzstd";
+  else if (begins("BZh"))
+    what = "content is compressed (bzip2), not CSV", hint = "unpack it first: bunzip2";
+  else if (begins("\xFF\xFE") || begins("\xFE\xFF"))
+    what = "content is UTF-16, not UTF-8", hint = "convert it: iconv -f utf-16 -t utf-8";
+  else if (begins("\x89PNG") || begins("\xFF\xD8\xFF"))
+    what = "content is a picture, not CSV";
+  else if (begins("%PDF"))
+    what = "content is PDF, not CSV", hint = "export the table as CSV";
+  else if (begins("\x89HDF"))
+    what = "content is HDF5, not CSV", hint = "export it as CSV or .npy";
+  if (what != nullptr) throw Error({ErrorKind::input, "E0301", at(file, 1, 1, 0), what, "", hint});
+  if (head.size() >= 4 && ((head[0] == 0) != (head[1] == 0)) &&
+      ((head[2] == 0) != (head[3] == 0)) && head[0] == head[2 * (head[0] == 0)])
+    throw Error({ErrorKind::input,
+                 "E0301",
+                 at(file, 1, 1, 0),
+                 "content is UTF-16, not UTF-8",
+                 "",
+                 "convert it: iconv -f utf-16 -t utf-8"});
+  refuse_binary(head, file);
+  const std::size_t front = head.find_first_not_of(" \t\r\n");
+  if (front == std::string_view::npos || (head[front] != '<' && head[front] != '{')) return;
+  const bool markup = head[front] == '<';
+  throw Error({ErrorKind::input,
+               "E0301",
+               at(file, 1, 1, 0),
+               markup ? "content is HTML or XML, not CSV" : "content is JSON, not CSV",
+               "",
+               markup ? "was a web page saved in place of the file?"
+                      : "is this the sidecar of a raw log, or a result?"});
+}
+
+namespace {
+
+struct LineCensus {
+  bool fits = false;              // as many cells as the table has columns
+  std::size_t good = 0, bad = 0;  // cells that are what their column holds, and those that are not
+  bool row() const { return fits && bad == 0; }
+  bool words() const { return fits && good == 0 && bad > 0; }
+};
+
+LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, NumberStyle style) {
+  LineCensus out;
+  out.fits = line.size() == kinds.size();
+  for (std::size_t c = 0; c < std::min(line.size(), kinds.size()); ++c) {
+    const std::string& text = line[c].text;
+    if (kinds[c] == ColumnKind::text || kinds[c] == ColumnKind::empty) continue;
+    const Cell cell = read_sampled(text, style);
+    if (cell.kind == Cell::missing) continue;
+    const bool number = cell.kind != Cell::bad;
+    const bool calendar = !number && (read_calendar(text, DateOrder::day_first) ||
+                                      read_calendar(text, DateOrder::month_first));
+    ++(kinds[c] == ColumnKind::number ? (number ? out.good : out.bad)
+                                      : (calendar ? out.good : out.bad));
+  }
+  return out;
+}
+
+// "(ms)", "V", "second", and what stands there for columns without a unit.
+bool unit_cell(std::string_view text) {
+  static constexpr std::array<std::string_view, 6> kNone = {
+      "ts", "rn", "sequence", "-", "n/a", "none"};
+  if (text.size() > 2 &&
+      ((text.front() == '(' && text.back() == ')') || (text.front() == '[' && text.back() == ']')))
+    return true;
+  const std::string lower = ascii_lower(text);
+  return find_unit(text) || std::find(kNone.begin(), kNone.end(), lower) != kNone.end();
+}
+
+bool line_of_units(const Cells& line) {
+  std::size_t units = 0, others = 0;
+  for (const Field& field : line)
+    if (!field.text.empty()) ++(unit_cell(field.text) ? units : others);
+  return units > 0 && units >= others;
+}
+
+// Campbell's table-oriented ASCII: station, names, units, what was done with the values.
+bool campbell(const std::vector<Cells>& lines) {
+  return lines.size() > 4 && (lines[0][0].text == "TOA5" || lines[0][0].text == "TOACI1");
+}
+
+// A line of words with one cell too many or too few, directly in front of the rows.
+bool names_off_by_one(const Cells& line, std::size_t columns) {
+  if (line.size() + 1 != columns && line.size() != columns + 1) return false;
+  return line.size() > 1 && std::all_of(line.begin(), line.end(), [](const Field& field) {
+           return read_cell(field.text, '.').kind == Cell::bad &&
+                  read_cell(field.text, ',').kind == Cell::bad;
+         });
+}
+
+}  // namespace
+
+TableStart find_table_start(const std::vector<Cells>& lines,
+                            const std::vector<ColumnKind>& kinds,
+                            NumberStyle style) {
+  if (campbell(lines)) return {4, 1, 2};
+  TableStart out;
+  std::vector<LineCensus> census;
+  census.reserve(lines.size());
+  for (const Cells& line : lines) census.push_back(census_of(line, kinds, style));
+  const auto first_row = std::find_if(census.begin(), census.end(), [](const LineCensus& line) {
+    return line.row() && line.good > 0;
+  });
+  if (first_row == census.end() && census[0].fits && census[0].bad > 0) {  // a header, then damage
+    out.names = 0;
+    out.data = 1;
+    return out;
+  }
+  const auto rows_at = static_cast<std::size_t>(first_row - census.begin());
+  if (first_row == census.end() || rows_at == 0) return out;
+  out.data = rows_at;
+  if (!census[rows_at - 1].fits && names_off_by_one(lines[rows_at - 1], kinds.size())) {
+    out.names = rows_at - 1;
+    return out;
+  }
+  std::size_t last = rows_at;  // the last line in front that is words only
+  while (last > 0 && !census[last - 1].words()) --last;
+  if (last > 0) {
+    out.data = last;
+    out.names = last - 1;
+    const bool named_above = last > 1 && census[last - 2].fits && census[last - 2].bad > 0;
+    if (named_above && line_of_units(lines[last - 1]) && !line_of_units(lines[last - 2])) {
+      out.units = last - 1;
+      out.names = last - 2;
+    }
+    return out;
+  }
+  // No line of words: names with numbers among them (c, 1, 2), a row that is damaged, or lines that do not fit.
+  const auto fitting =
+      std::find_if(census.begin(), first_row, [](const LineCensus& line) { return line.fits; });
+  if (fitting != first_row) {
+    const auto at = static_cast<std::size_t>(fitting - census.begin());
+    out.names = at;
+    out.data = at + 1;
+    return out;
+  }
+  // Names, one too many or too few, directly in front of the rows.
+  const std::size_t cells = lines[rows_at - 1].size();
+  const std::size_t off = cells > kinds.size() ? cells - kinds.size() : kinds.size() - cells;
+  if (cells > 1 && 2 * off <= kinds.size() + 1) out.names = rows_at - 1;
+  return out;
+}
+
+}  // namespace libchar::csv
