@@ -88,9 +88,9 @@ std::string sensors_section(const ReplayView& view) {
     const SensorResult& s = r.sensors[i];
     out += fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n",
                        markdown_text(s.name),
-                       s.constant  ? " (constant)"
-                       : s.copy_of ? " (= " + markdown_text(r.sensors[*s.copy_of].name) + ")"
-                                   : "",
+                       s.constant           ? " (constant)"
+                       : !s.copy_of.empty() ? " (= " + markdown_text(s.copy_of) + ")"
+                                            : "",
                        markdown_text(s.unit),
                        brief_text(s.error.rmse, 4),
                        brief_text(s.error.bias, 2),

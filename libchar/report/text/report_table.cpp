@@ -143,9 +143,9 @@ std::vector<const ReportedChannel*> chosen_channels(const ReportedCharacterizati
   return out;
 }
 
-std::vector<const AlgorithmSummary*> best_first(const ReplaySummary& report) {
-  std::vector<const AlgorithmSummary*> out;
-  for (const AlgorithmSummary& a : report.algorithms)
+std::vector<const ReplayReport::Algorithm*> best_first(const ReplayReport& report) {
+  std::vector<const ReplayReport::Algorithm*> out;
+  for (const ReplayReport::Algorithm& a : report.algorithms)
     if (a.ran) out.push_back(&a);
   std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) {
     return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
@@ -153,10 +153,10 @@ std::vector<const AlgorithmSummary*> best_first(const ReplaySummary& report) {
   return out;
 }
 
-std::string ranking_csv(const ReplaySummary& report) {
+std::string ranking_csv(const ReplayReport& report) {
   std::string out = "algorithm,bound,rmse,low95,high95,unit,regret,ns_per_sample,peak_bytes\n";
   const std::string unit = report.inputs.empty() ? "" : report.inputs[0].unit;
-  for (const AlgorithmSummary* a : best_first(report))
+  for (const ReplayReport::Algorithm* a : best_first(report))
     out += fmt::format("{},{},{},{},{},{},{},{},{}\n",
                        csv_cell(a->label),
                        a->bound,
@@ -166,7 +166,7 @@ std::string ranking_csv(const ReplaySummary& report) {
                        csv_cell(unit),
                        csv_number(a->regret),
                        csv_number(a->ns_per_sample),
-                       csv_number(a->peak_bytes));
+                       a->peak_bytes ? std::to_string(*a->peak_bytes) : "");
   return out;
 }
 
@@ -185,11 +185,11 @@ std::string coefficient_table(const ReportedCharacterization& report,
   return rendered(table, format);
 }
 
-std::string ranking_table(const ReplaySummary& report, TableFormat format) {
+std::string ranking_table(const ReplayReport& report, TableFormat format) {
   if (format == TableFormat::csv) return ranking_csv(report);
   ReportTable table;
   const std::string unit = report.inputs.empty() ? "" : shown_unit(report.inputs[0].unit);
-  const std::string score = report.has_reference ? "RMSE" : "leave-one-out RMS";
+  const std::string score = report.reference ? "RMSE" : "leave-one-out RMS";
   table.head = {{"method"},
                 {unit.empty() ? score : score + ", " + unit},
                 {"95 % interval"},
@@ -197,16 +197,13 @@ std::string ranking_table(const ReplaySummary& report, TableFormat format) {
                 {"a sample"},
                 {"memory"}};
   table.alignment = "lrlrrr";
-  for (const AlgorithmSummary* a : best_first(report)) {
-    const auto bytes = std::isfinite(a->peak_bytes)
-                           ? std::optional(static_cast<std::uint64_t>(a->peak_bytes))
-                           : std::nullopt;
+  for (const ReplayReport::Algorithm* a : best_first(report)) {
     table.rows.push_back({{printable(a->label) + (a->bound ? " (bound)" : "")},
                           {number_text(a->rmse)},
                           {interval_text(a->rmse_ci95)},
                           {excess_text(a->regret)},
                           {duration_text(1e-9 * a->ns_per_sample)},
-                          {bytes_text(bytes)}});
+                          {bytes_text(a->peak_bytes)}});
   }
   return rendered(table, format);
 }

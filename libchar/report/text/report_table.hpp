@@ -6,7 +6,7 @@
 
 #include "libchar/characterize/compare/reported_characterization.hpp"
 #include "libchar/core/document/enum_table.hpp"
-#include "libchar/replay/replay_summary.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
 
@@ -25,7 +25,7 @@ std::string coefficient_table(const ReportedCharacterization& report,
                               TableFormat format);
 
 /// The methods of a replay, best first; bounds are said to be some.
-std::string ranking_table(const ReplaySummary& report, TableFormat format);
+std::string ranking_table(const ReplayReport& report, TableFormat format);
 
 /// Text, and a unit, as LaTeX has them: no package, no character beyond ASCII of those that units and numbers here consist of.
 std::string latex_text(const std::string& text);

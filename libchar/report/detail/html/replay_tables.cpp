@@ -284,9 +284,9 @@ std::string sensors_table(const ReplayView& view) {
     std::string h;
     for (const double v : s.h) h += (h.empty() ? "" : ", ") + brief_text(v, 4);
     row.push_back(r.scene.tilt ? "–" : h);
-    row.push_back(s.constant  ? "never changed"
-                  : s.copy_of ? "the same as " + r.sensors[*s.copy_of].name
-                              : "");
+    row.push_back(s.constant           ? "never changed"
+                  : !s.copy_of.empty() ? "the same as " + s.copy_of
+                                       : "");
     out += table_row(row);
   }
   return out + "</tbody></table></div>\n";
