@@ -42,7 +42,7 @@ class DataflashReader final : public TopicReader {
   void select(std::size_t topic,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
-              std::int64_t unit_ns) override;
+              StampUnit unit) override;
   bool next(RowBlock& block, std::size_t most, Warnings& warnings) override;
   void finish(Warnings& warnings) override;
 
@@ -122,11 +122,11 @@ void DataflashReader::begin() {
 void DataflashReader::select(std::size_t topic,
                              const std::vector<std::size_t>& fields,
                              std::optional<std::size_t> time,
-                             std::int64_t unit_ns) {
+                             StampUnit unit) {
   topic_ = topic;
   chosen_ = fields;
   time_ = time;
-  unit_ns_ = unit_ns;
+  unit_ns_ = unit.ns;
   begin();
 }
 

@@ -47,7 +47,7 @@ class UlogReader final : public TopicReader {
   void select(std::size_t topic,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
-              std::int64_t unit_ns) override;
+              StampUnit unit) override;
   bool next(RowBlock& block, std::size_t most, Warnings& warnings) override;
   void finish(Warnings& warnings) override;
 
@@ -160,11 +160,11 @@ FirstValues UlogReader::first_values(std::size_t topic, std::size_t field) {
 void UlogReader::select(std::size_t topic,
                         const std::vector<std::size_t>& fields,
                         std::optional<std::size_t> time,
-                        std::int64_t unit_ns) {
+                        StampUnit unit) {
   topic_ = topic;
   chosen_ = fields;
   time_ = time;
-  unit_ns_ = unit_ns;
+  unit_ns_ = unit.ns;
   walk_.emplace(file_, block_bytes_, header_.stretches, log_.sizes, losses_again_);
   walk_->go_to(log_.contents[topic].first_byte);
 }

@@ -66,9 +66,26 @@ constexpr std::array kTimeNames = {
     KnownName{"millis", 1000000},
     KnownName{"milliseconds", 1000000},
     KnownName{"micros", 1000},
+    KnownName{"\xE6\x97\xB6\xE9\x97\xB4"},  // Chinese
+    KnownName{"\xE6\x97\xB6\xE9\x97\xB4\xE6\x88\xB3"},
+    KnownName{"\xE6\x99\x82\xE9\x96\x93"},
+    KnownName{"\xE6\x99\x82\xE5\x88\xBB"},
     KnownName{"microseconds", 1000},
     KnownName{"nanoseconds", 1},
     KnownName{"sampletimefine"}};  // Xsens: 0.1 ms from MT Manager, 1 us from DOTs
+
+// Units as names, and what is a clock elsewhere: time only where the values are a steady clock.
+constexpr std::array kClockNames = {KnownName{"ms", 1000000},
+                                    KnownName{"msec", 1000000},
+                                    KnownName{"us", 1000},
+                                    KnownName{"usec", 1000},
+                                    KnownName{"ns", 1},
+                                    KnownName{"ts"},
+                                    KnownName{"tow", 1000000000},
+                                    KnownName{"mjd"},
+                                    KnownName{"utc"},
+                                    KnownName{"tick"},
+                                    KnownName{"ticks"}};
 
 // Time only where the values are dates or clock times.
 constexpr std::array<std::string_view, 8> kDateNames = {
@@ -124,6 +141,7 @@ std::optional<TimeName> time_name(std::string_view stem) {
   std::string_view name = lower;
   while (name.size() > 1 && (name[0] == '_' || name[0] == '%' || name[0] == '#' || name[0] == ' '))
     name.remove_prefix(1);
+  if (name.ends_with("()")) name.remove_suffix(2);  // millis()
   TimeName out;
   if (name == "sampletimefine" || name == "sampletime" || time_of(name, kDevices) ||
       header_stamp(name))
@@ -133,6 +151,12 @@ std::optional<TimeName> time_name(std::string_view stem) {
   for (const KnownName& known : kTimeNames)
     if (known.name == name) {
       out.unit_ns = known.unit_ns;
+      return out;
+    }
+  for (const KnownName& known : kClockNames)
+    if (known.name == name) {
+      out.unit_ns = known.unit_ns;
+      out.letter = true;
       return out;
     }
   out.letter = name == "t";

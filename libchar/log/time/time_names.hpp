@@ -13,7 +13,7 @@ enum class Clock : std::uint8_t { device, unknown, host };
 struct TimeName {
   std::int64_t unit_ns = 0;  ///< 0 = not said by the name
   Clock clock = Clock::unknown;
-  bool letter = false;  ///< "t" alone, which is a temperature or a torque elsewhere
+  bool letter = false;  ///< "t" or "ts" alone: time only where the values are a clock
   bool date = false;    ///< a word for dates and clocks: time only where the values are such
 };
 

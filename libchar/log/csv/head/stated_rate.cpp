@@ -124,4 +124,10 @@ std::optional<double> stated_rate_hz(std::string_view line) {
   return rate;
 }
 
+std::optional<double> stated_tick_s(std::string_view line) {
+  const std::string lower = ascii_lower(line);
+  const Statement said = statement_in(lower);
+  return said.key == "tscale" && said.number && *said.number > 0 ? said.number : std::nullopt;
+}
+
 }  // namespace libchar::csv

@@ -10,4 +10,7 @@ namespace libchar::csv {
 /// rate in Hz that a line states; nothing when it states none that can be.
 std::optional<double> stated_rate_hz(std::string_view line);
 
+/// Seconds in one count of the stamps: "tscale,0.001" of Gyroflow's .gcsv.
+std::optional<double> stated_tick_s(std::string_view line);
+
 }  // namespace libchar::csv
