@@ -176,7 +176,7 @@ void spikes_layout(Archive& at, Count& n) {
 
 struct RecordStage {
   using Sums = RecordSums;
-  void join(RecordSums& sums, RecordSums later) { join(sums, std::move(later)); }
+  void join(RecordSums& sums, RecordSums later) { detail::join(sums, std::move(later)); }
   void settle(RecordSums& sums, std::uint64_t height, std::uint64_t first_leaf) {
     detail::settle(sums, height, first_leaf);
   }
