@@ -240,9 +240,8 @@ void run_lot(Session& session,
   print_beside(session, fleet_text(report, table_width()));
   for (const Characterization& result : results)
     if (result.limits)
-      print_beside(
-          session,
-          "\n" + printable(result.log.file) + limits_text(*result.limits, text_look().colours));
+      print_beside(session,
+                   "\n" + printable(result.log.file) + limits_text(*result.limits, text_look()));
   say_written(session, files, {});
 }
 

@@ -10,8 +10,7 @@
 #include "libchar/benchmark/bench_view.hpp"
 #include "libchar/core/document/fields.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
+#include "libchar/core/table/table.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {
@@ -60,10 +59,22 @@ std::vector<Named> figures_in(const BenchReport& report) {
   return out;
 }
 
-std::string state_of(const BenchChange& c) {
+Cell state_of(const BenchChange& c) {
   if (c.was.value == c.now.value) return "the same";
-  if (!c.resolved) return "no difference resolved";
-  return c.ratio > 1 ? "worse" : "better";
+  return c.ratio > 1 ? Cell::word("worse", Tint::bad) : Cell::word("better", Tint::good);
+}
+
+Table changes_table(const BenchChanges& changes) {
+  Table out("figure|was|now|ratio|");
+  out.title = "Against the older run";
+  for (const BenchChange& c : changes.figures)
+    if (c.resolved)
+      out.add({c.what,
+               figure_text(c.was),
+               figure_text(c.now),
+               fmt::format("{:.3f}", c.ratio),
+               state_of(c)});
+  return out;
 }
 
 }  // namespace
@@ -107,22 +118,11 @@ BenchChanges bench_changes(const BenchReport& was,
 }
 
 std::string changes_text(const BenchChanges& changes, double tolerance) {
-  std::vector<std::vector<std::string>> rows = {{"figure", "was", "now", "ratio", ""}};
-  std::size_t same = 0;
-  for (const BenchChange& c : changes.figures) {
-    if (!c.resolved) {
-      ++same;
-      continue;
-    }
-    rows.push_back({printable(c.what),
-                    figure_text(c.was),
-                    figure_text(c.now),
-                    fmt::format("{:.3f}", c.ratio),
-                    state_of(c)});
-  }
-  std::string out = "Against the older run\n";
-  if (rows.size() > 1) out += text_table(rows, "  ", true);
-  out += fmt::format("  {} of {} figures: no difference resolved\n", same, changes.figures.size());
+  const Table table = changes_table(changes);
+  std::string out = table.rows.empty() ? table.title + "\n" : terminal_table(table);
+  out += fmt::format("  {} of {} figures: no difference resolved\n",
+                     changes.figures.size() - table.rows.size(),
+                     changes.figures.size());
   if (!changes.missing.empty())
     out += fmt::format("  {} figures stand in the older run only\n", changes.missing.size());
   if (!changes.same_machine) out += "  another machine: times are shown and judge nothing\n";

@@ -7,12 +7,11 @@
 #include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/bench_view.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/charts.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_page.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/svg/svg_points.hpp"
 
 namespace libchar {
 namespace {
@@ -21,21 +20,11 @@ std::string section_html(const BenchSection& section) {
   std::string out = "<section class=\"channel\">\n<h2>" + html_text(section.title) + "</h2>\n";
   for (const std::string& sentence : section.sentences)
     out += "<p>" + html_text(sentence) + "</p>\n";
-  for (const BenchChart& chart : section.charts) out += svg_points(chart, section.title);
-  if (!section.heads.empty()) {
-    out += "<div class=\"wide\"><table class=\"many\">\n" + table_head(section.heads);
-    for (const auto& row : section.rows) out += table_row(row);
-    out += "</tbody></table></div>\n";
-  }
+  for (const BenchChart& chart : section.charts) out += points_figure(chart, section.title);
+  if (!section.table.columns.empty()) out += html_table(section.table, {.css = "many"});
   for (const std::string& note : section.notes)
     out += "<p class=\"note\">" + html_text(note) + "</p>\n";
   return out + "</section>\n";
-}
-
-std::string markdown_row(const std::vector<std::string>& cells) {
-  std::string out = "|";
-  for (const std::string& cell : cells) out += " " + markdown_text(cell) + " |";
-  return out + "\n";
 }
 
 }  // namespace
@@ -45,13 +34,7 @@ std::string bench_text(const BenchReport& report) {
   for (const BenchSection& section : bench_view(report)) {
     out += printable(section.title) + "\n";
     for (const std::string& sentence : section.sentences) out += "  " + printable(sentence) + "\n";
-    if (!section.heads.empty()) {
-      std::vector<std::vector<std::string>> rows = {section.heads};
-      rows.insert(rows.end(), section.rows.begin(), section.rows.end());
-      for (auto& row : rows)
-        for (std::string& cell : row) cell = printable(cell);
-      out += text_table(rows, "  ", true);
-    }
+    if (!section.table.columns.empty()) out += terminal_table(section.table);
     out += "\n";
   }
   return out;
@@ -62,11 +45,8 @@ std::string bench_markdown(const BenchReport& report) {
   for (const BenchSection& section : bench_view(report)) {
     out += "\n## " + markdown_text(section.title) + "\n\n";
     for (const std::string& sentence : section.sentences) out += markdown_text(sentence) + "\n";
-    if (!section.heads.empty()) {
-      out += (section.sentences.empty() ? "" : "\n") + markdown_row(section.heads) +
-             markdown_row(std::vector<std::string>(section.heads.size(), "---"));
-      for (const auto& row : section.rows) out += markdown_row(row);
-    }
+    if (!section.table.columns.empty())
+      out += (section.sentences.empty() ? "" : "\n") + table_text(section.table);
     for (const std::string& note : section.notes) out += "\n" + markdown_text(note) + "\n";
   }
   return out;

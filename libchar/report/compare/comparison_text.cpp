@@ -7,9 +7,10 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/report_rows.hpp"
+#include "libchar/report/detail/tables/scores.hpp"
 
 namespace libchar {
 namespace {
@@ -42,16 +43,18 @@ const Fields<ReplayReport> kSideFields = always(Fields<ReplayReport>{
     field_or_null<&ReplayReport::best>("best"),
 });
 
-std::string bytes(const ReplayReport::Algorithm* one) {
-  return bytes_text(one != nullptr && one->ran ? one->peak_bytes : std::nullopt);
+/// What is compared of a method: NaN where it did not run.
+struct Scores {
+  double rmse = kNone, ns_per_sample = kNone, peak_bytes = kNone;
+};
+Scores scores_of(const ReplayReport::Algorithm* one) {
+  if (one == nullptr || !one->ran) return {};
+  return {one->rmse,
+          one->ns_per_sample,
+          one->peak_bytes ? static_cast<double>(*one->peak_bytes) : kNone};
 }
 
-double value(const ReplayReport::Algorithm* one, double AlgorithmResult::*member) {
-  return one != nullptr && one->ran ? one->*member : std::nan("");
-}
-
-}  // namespace
-
+/// "+4.62 %", "0 %"; "–" for no number.
 std::string change_text(double change) {
   if (!std::isfinite(change)) return "–";
   if (change == 0) return "0 %";
@@ -60,12 +63,40 @@ std::string change_text(double change) {
                                    : fmt::format("{:+.2f} %", percent);
 }
 
+}  // namespace
+
 std::string side_of(const ComparedAlgorithm& row) {
   if (row.both_ran()) return "";
   if (row.a == nullptr) return row.b->ran ? "only in B" : "only in B, skipped";
   if (row.b == nullptr) return row.a->ran ? "only in A" : "only in A, skipped";
   return row.a->ran ? "skipped in B" : row.b->ran ? "skipped in A" : "skipped in both";
 }
+
+namespace {
+
+Table compared_table(const Comparison& c) {
+  const std::string score = c.a.reference ? "RMSE" : "leave-one-out RMS";
+  Table out("algorithm|" + score + " A|" + score +
+            " B|change|a sample A|B|change|memory A|B|error of B");
+  for (const ComparedAlgorithm& row : c.algorithms) {
+    const std::string where = side_of(row);
+    if (where == "skipped in both") continue;
+    const Scores a = scores_of(row.a), b = scores_of(row.b);
+    out.add({row.label,
+             brief_text(a.rmse, 5),
+             brief_text(b.rmse, 5),
+             change_text(row.rmse_change),
+             time_cell(a.ns_per_sample),
+             time_cell(b.ns_per_sample),
+             change_text(row.ns_change),
+             memory_cell(a.peak_bytes),
+             memory_cell(b.peak_bytes),
+             where.empty() ? std::string(name_of(row.difference)) : where});
+  }
+  return out;
+}
+
+}  // namespace
 
 const Fields<Comparison>& comparison_fields() {
   using T = Comparison;
@@ -93,32 +124,8 @@ std::string comparison_text(const Comparison& c, std::size_t width) {
                                 printable(c.b.scene_title()));
   for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
   for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
-  const std::string score = c.a.reference ? "RMSE" : "leave-one-out";
-  std::vector<std::vector<std::string>> rows = {{"algorithm",
-                                                 score + " A",
-                                                 score + " B",
-                                                 "change",
-                                                 "ns/sample A",
-                                                 "B",
-                                                 "change",
-                                                 "memory A",
-                                                 "B",
-                                                 "error of B"}};
-  for (const ComparedAlgorithm& row : c.algorithms) {
-    const std::string where = side_of(row);
-    if (where == "skipped in both") continue;
-    rows.push_back({printable(row.label),
-                    brief_text(value(row.a, &AlgorithmResult::rmse), 5),
-                    brief_text(value(row.b, &AlgorithmResult::rmse), 5),
-                    change_text(row.rmse_change),
-                    brief_text(value(row.a, &AlgorithmResult::ns_per_sample), 3),
-                    brief_text(value(row.b, &AlgorithmResult::ns_per_sample), 3),
-                    change_text(row.ns_change),
-                    bytes(row.a),
-                    bytes(row.b),
-                    where.empty() ? std::string(name_of(row.difference)) : where});
-  }
-  return out + "\n" + text_table(rows, "", true, width) + "\n" + printable(c.verdict) + "\n";
+  return out + "\n" + terminal_table(compared_table(c), {width}, "") + "\n" + printable(c.verdict) +
+         "\n";
 }
 
 std::string comparison_markdown(const Comparison& c) {
@@ -137,27 +144,8 @@ std::string comparison_markdown(const Comparison& c) {
     for (const std::string& sentence : *lists[i])
       out += fmt::format("- {}\n", markdown_text(sentence));
   }
-  const char* score = c.a.reference ? "RMSE" : "leave-one-out RMS";
-  out += fmt::format(
-      "\n| algorithm | {} A | {} B | change | resolved | a sample A | a sample B | memory A | "
-      "memory B |\n|---|---|---|---|---|---|---|---|---|\n",
-      score,
-      score);
-  for (const ComparedAlgorithm& row : c.algorithms) {
-    const std::string where = side_of(row);
-    if (where == "skipped in both") continue;
-    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                       markdown_text(row.label),
-                       brief_text(value(row.a, &AlgorithmResult::rmse), 5),
-                       brief_text(value(row.b, &AlgorithmResult::rmse), 5),
-                       change_text(row.rmse_change),
-                       where.empty() ? std::string(name_of(row.difference)) : where,
-                       duration_text(1e-9 * value(row.a, &AlgorithmResult::ns_per_sample)),
-                       duration_text(1e-9 * value(row.b, &AlgorithmResult::ns_per_sample)),
-                       bytes(row.a),
-                       bytes(row.b));
-  }
-  return out + "\nResolved: the 95 % intervals of the two do not overlap.\n";
+  return out + "\n" + table_text(compared_table(c)) +
+         "\nResolved: the 95 % intervals of the two do not overlap.\n";
 }
 
 }  // namespace libchar

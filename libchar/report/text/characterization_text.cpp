@@ -41,7 +41,7 @@ std::string characterization_text(const CharacterizationView& view, const TextLo
         text += fmt::format("  {}\n", printable(sentence));
     text += findings_text(channel.judgement.findings, 5, look.colours);
   }
-  if (result.limits) text += limits_text(*result.limits, look.colours);
+  if (result.limits) text += limits_text(*result.limits, look);
   return text;
 }
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/table/table.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
@@ -21,7 +21,7 @@ std::string beside_noise(double value, double noise) {
       value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
 }
 
-std::vector<std::string> channel_row(const Channel& channel, const ChannelQuality& q) {
+std::vector<Cell> channel_row(const Channel& channel, const ChannelQuality& q) {
   const double noise = q.standard_deviation;
   const bool constant = q.samples > 1 && q.minimum == q.maximum;
   return {printable(channel.name, 40),
@@ -37,23 +37,15 @@ std::vector<std::string> channel_row(const Channel& channel, const ChannelQualit
           beside_noise(q.maximum, noise),
           q.resolution ? brief_text(*q.resolution, 4) : "-",
           std::to_string(q.saturated),
-          q.samples < 3 || constant ? "-" : brief_text(q.difference_kurtosis, 3)};
+          Cell::shown(q.samples < 3 || constant ? "-" : brief_text(q.difference_kurtosis, 3),
+                      q.difference_kurtosis)};
 }
 
-std::string channel_table(const Inspection& inspection, std::size_t width) {
-  std::vector<std::vector<std::string>> rows = {{"channel",
-                                                 "unit",
-                                                 "missing",
-                                                 "mean",
-                                                 "sd",
-                                                 "min",
-                                                 "max",
-                                                 "LSB",
-                                                 "saturated",
-                                                 "kurtosis of differences"}};
+Table channel_table(const Inspection& inspection) {
+  Table out("channel|unit|missing|mean|sd|min|max|LSB|saturated|kurtosis of differences");
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
-    rows.push_back(channel_row(inspection.info.channels[c], inspection.quality[c]));
-  return text_table(rows, "  ", false, width);
+    out.add(channel_row(inspection.info.channels[c], inspection.quality[c]));
+  return out;
 }
 
 // "angular_velocity.x, … and 34 more": enough to see what a topic is about.
@@ -68,7 +60,7 @@ std::string some_fields(const LogTopic& topic) {
   return text;
 }
 
-std::vector<std::string> topic_row(const LogTopic& topic) {
+std::vector<Cell> topic_row(const LogTopic& topic) {
   return {printable(topic.name, 60),
           topic.type.empty() ? "-" : printable(topic.type, 40),
           std::to_string(topic.rows),
@@ -77,15 +69,15 @@ std::vector<std::string> topic_row(const LogTopic& topic) {
 }
 
 // What sensors write first, what cannot be read last.
-std::string topic_table(const LogInfo& info, std::size_t width) {
+Table topic_table(const LogInfo& info) {
   const auto rank = [](const LogTopic& topic) {
     return !topic.why_not.empty() ? 2 : topic.sensor ? 0 : 1;
   };
-  std::vector<std::vector<std::string>> rows = {{"topic", "type", "rows", "rate", "fields"}};
+  Table out("topic|type|rows|rate|fields");
   for (const int wanted : {0, 1, 2})
     for (const LogTopic& topic : info.topics)
-      if (rank(topic) == wanted) rows.push_back(topic_row(topic));
-  return text_table(rows, "  ", true, width);
+      if (rank(topic) == wanted) out.add(topic_row(topic));
+  return out;
 }
 
 // One line for each kind of finding, not one for each channel: what the first says, and who is alike.
@@ -128,7 +120,7 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
   for (const std::string& guess : info.guesses) text += "  guessed: " + printable(guess) + "\n";
   for (const Warning& warning : info.warnings.list())
     text += "  warning: " + sentence_of(warning) + "\n";
-  text += is_listing(info) ? topic_table(info, width) : channel_table(inspection, width);
+  text += terminal_table(is_listing(info) ? topic_table(info) : channel_table(inspection), {width});
   return text + remarks(inspection);
 }
 
