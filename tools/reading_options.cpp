@@ -35,7 +35,15 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
       .group("Reading");
   verb.add_rate("--rate",
                 options.rate_hz,
-                "sampling rate (Hz, or 1.5kHz…) of a log without stamps and without a rate")
+                "sampling rate (Hz, 1.5kHz, 1/300…) of a log without stamps and without a rate")
+      .group("Reading");
+  verb.add_parsed(
+          "--interval",
+          "TIME",
+          [&options](const std::string& text) {
+            options.rate_hz = 1 / libchar::parse_duration_s(text);
+          },
+          "the same as the time from sample to sample (s, or 5min…)")
       .group("Reading");
   verb.add_text(
           "--time-column",
@@ -45,7 +53,7 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
       .group("Reading");
   verb.add_choice("--time-unit",
                   options.time_unit,
-                  {"auto", "s", "ms", "us", "ns", "100us"},
+                  {"auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"},
                   "unit of the time column (default: auto)")
       .group("Reading");
 }

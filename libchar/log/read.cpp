@@ -238,11 +238,31 @@ void warn_of_units(const ReadOptions& options, Warnings& warnings) {
                "`channels` chooses others"});
 }
 
+/// How the values of a channel stand among the first samples: one that is slower than the rows of its table
+/// has one in every so many.
+struct Presence {
+  std::uint64_t looked = 0, values = 0, last = 0, usual = 0, same = 0;
+
+  void add(const double* x, std::size_t n) {
+    constexpr std::uint64_t kLook = 65536;
+    for (std::size_t i = 0; i < n && looked < kLook; ++i, ++looked) {
+      if (std::isnan(x[i])) continue;
+      const std::uint64_t distance = looked - last;
+      if (values == 1) usual = distance;
+      same += values > 0 && distance + 1 >= usual && distance <= usual + 1;
+      last = looked;
+      if (++values == kLook / 1024 && usual == 1) looked = kLook;  // as fast as its rows
+    }
+  }
+  bool slow() const { return values > 4 && usual > 1 && 10 * same >= 9 * (values - 1); }
+};
+
 // Passes blocks on and remembers which channels had a value at all.
 struct Watch final : BlockSink {
   Watch(BlockSink& sink, const ReadOptions& reading) : next(sink), options(reading) {}
   void begin(const LogInfo& so_far) override {
     seen.assign(so_far.channels.size(), false);
+    presence.resize(so_far.channels.size());
     LogInfo named = so_far;
     name_channels(named.channels, options);
     factors = scale_channels(named.channels, options, nullptr);
@@ -251,9 +271,11 @@ struct Watch final : BlockSink {
     next.begin(named);
   }
   void block(const SampleBlock& samples) override {
-    for (std::size_t c = 0; c < seen.size(); ++c)
+    for (std::size_t c = 0; c < seen.size(); ++c) {
+      presence[c].add(samples.channels[c], samples.rows);
       for (std::size_t i = 0; i < samples.rows && !seen[c]; ++i)
         seen[c] = !std::isnan(samples.channels[c][i]);
+    }
     if (scales)
       next.block(scaled_block(samples));
     else
@@ -273,6 +295,7 @@ struct Watch final : BlockSink {
   BlockSink& next;
   const ReadOptions& options;
   std::vector<bool> seen;
+  std::vector<Presence> presence;
   std::vector<double> factors;  // of the channels
   bool scales = false;          // one of them is not 1
   std::vector<std::vector<double>> scaled;
@@ -361,6 +384,13 @@ void judge_values(const Watch& watch,
       warnings.add("no_finite_value",
                    "channels without any finite value",
                    "channel " + info.channels[c].name);
+  for (std::size_t c = 0; c < watch.seen.size(); ++c)
+    if (watch.presence[c].slow())
+      warnings.add(
+          "slow_channel",
+          "channels slower than the rows of their table: most of their samples are missing "
+          "here; read alone (`channels` NAME) they have a grid of their own",
+          fmt::format("channel {}, every {} rows", info.channels[c].name, watch.presence[c].usual));
 }
 
 }  // namespace

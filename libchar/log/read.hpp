@@ -46,7 +46,7 @@ struct ReadOptions {
       rate_hz;  ///< sampling rate; needed when the log has neither stamps nor a rate; wins over stamps' absence only
   std::string time_column =
       "auto";  ///< "auto", "none", a name, or c0-style position among all columns
-  std::string time_unit = "auto";  ///< "auto", "s", "ms", "us", "ns", "100us"
+  std::string time_unit = "auto";  ///< "auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"
   std::string format = "auto";     ///< "auto" or a name of the table of formats
   std::string preset;  ///< which instrument wrote a .imu file, which does not say: "IMAR", "LN200"…
   std::string delimiter = "auto";  ///< "auto", ",", ";", "tab", "space", or one character

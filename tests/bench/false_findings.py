@@ -1,5 +1,5 @@
-"""How often a sound log is called doubtful: simulated logs of ten kinds (rates, units, formats, quantization, gaps, clocks), 20
-seeds each, through characterize. Prints the cautions and bad findings, a line for each kind.
+"""How often a sound log is called doubtful: simulated logs of ten kinds (rates, units, formats, quantization, gaps,
+clocks), 20 seeds each, through characterize. Prints the cautions and bad findings, a line for each kind.
 
 usage: false_findings.py PROGRAM [SEEDS = 20]
 """
@@ -45,8 +45,8 @@ with tempfile.TemporaryDirectory() as folder:
         said = collections.Counter()
         for seed in range(seeds):
             log, out = here / f"log{seed}{suffix}", here / "out"
-            subprocess.run([program, "simulate", model, "--samples", str(samples), "--seed", str(1000 + seed), "-o", log,
-                            "--no-truth", "--no-scene", "--force", "-q"], check=True)
+            subprocess.run([program, "simulate", model, "--samples", str(samples), "--seed", str(1000 + seed),
+                            "-o", log, "--no-truth", "--no-scene", "--force", "-q"], check=True)
             if kind == "gaps":
                 drop_rows(log, random.Random(seed))
             more = ["--rate", str(rate)] if suffix == ".npy" else []

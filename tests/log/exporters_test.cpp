@@ -665,11 +665,11 @@ std::vector<Export> bench_exports() {
        "t,clock_ms,gx\n" +
            lines(12,
                  [](int k) { return fmt::format("{},{},{}\n", 24 + (k % 3) * 0.1, 10 * k, k); }),
-       "t[] clock[ms] gx[]",
+       "t[] gx[]",
+       100,
        0,
-       kNoStart,
-       {24, 0, 0},
-       "",
+       {24, 0},
+       "time column: clock",
        false,
        nullptr});
   out.push_back(

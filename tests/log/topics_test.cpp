@@ -71,10 +71,10 @@ struct MemoryReader final : TopicReader {
   void select(std::size_t,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time_field,
-              std::int64_t unit_ns) override {
+              StampUnit wanted_unit) override {
     wanted = fields;
     time = time_field;
-    unit = unit_ns;
+    unit = wanted_unit.ns;
   }
   bool next(RowBlock& block, std::size_t most, Warnings&) override {
     for (; at < rows.size() && block.rows < most; ++at, ++block.rows) {

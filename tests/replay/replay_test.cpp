@@ -427,8 +427,8 @@ TEST_CASE("replay: a sensor that repeats another one is named") {
   REQUIRE(twice.warnings.find("copied_sensor") != nullptr);
   CHECK(twice.warnings.find("copied_sensor")->where.rows ==
         std::vector<std::string>{"again repeats a"});
-  CHECK(twice.sensors[2].copy_of == std::size_t{0});
-  CHECK_FALSE(twice.sensors[3].copy_of.has_value());
+  CHECK(twice.sensors[2].copy_of == "a");
+  CHECK(twice.sensors[3].copy_of.empty());
   const std::vector<double> w = named(twice, "optimal-weights").weights.at(0);
   CHECK(w[0] == w[2]);
   for (const double one : w) CHECK(std::abs(one) < 1);

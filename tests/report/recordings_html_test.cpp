@@ -11,6 +11,7 @@
 #include "libchar/report/html/runs_report.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic.hpp"
+#include "tests/support/schemas.hpp"
 
 using namespace libchar;
 

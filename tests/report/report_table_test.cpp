@@ -40,7 +40,7 @@ TEST_CASE("coefficients as Markdown, LaTeX and CSV, of all channels or of some")
 }
 
 TEST_CASE("a ranking is a table, best first") {
-  const ReplaySummary report =
+  const ReplayReport report =
       parse_replay_report(dump_json(replay_json(test::synthetic_replay())), "report.json");
   const std::string csv = ranking_table(report, TableFormat::csv);
   double last = 0;

@@ -150,12 +150,12 @@ void LeafStage::join(ChannelSums& sums, ChannelSums later) {
   sums.meters.quality.join(later.meters.quality);
   sums.meters.trace.join(std::move(later.meters.trace));
   if (wants_spectrum_) spectrum_.join(sums.spectrum, later.spectrum);
-  libchar::join(sums.record, std::move(later.record));
+  detail::join(sums.record, std::move(later.record));
   libchar::join(sums.digital, later.digital);
 }
 
 void LeafStage::settle(ChannelSums& sums, std::uint64_t height, std::uint64_t first_leaf) const {
-  libchar::settle(sums.record, height, first_leaf);
+  detail::settle(sums.record, height, first_leaf);
 }
 
 void LeafStage::write_state(const ChannelSums& sums, StateWriter& to) {
@@ -163,7 +163,7 @@ void LeafStage::write_state(const ChannelSums& sums, StateWriter& to) {
   sums.meters.trace.write_state(to);
   to.reals(sums.kept);
   WelchParts::write_state(sums.spectrum, to);
-  libchar::write_state(sums.record, to);
+  detail::write_state(sums.record, to);
   libchar::write_state(sums.digital, to);
   to.number(sums.types.size());
   for (const NoiseType& type : sums.types) {

@@ -89,12 +89,9 @@ std::string status_words(Status status) {
   return out;
 }
 
-bool doubted(Status status) {
-  return status == Status::undetermined || status == Status::misfit;
-}
-
 Tint tint_of(Status status) {
-  if (doubted(status)) return status == Status::misfit ? Tint::bad : Tint::doubtful;
+  if (status == Status::misfit) return Tint::bad;
+  if (status == Status::undetermined) return Tint::doubtful;
   return status == Status::detected || status == Status::given ? Tint::good : Tint::absent;
 }
 

@@ -55,8 +55,6 @@ std::string interval_brackets(const ShownValue& shown);
 
 /// "not detected": without the underlines of files.
 std::string status_words(Status status);
-/// Fitted, and not to be relied on.
-bool doubted(Status status);
 Tint tint_of(Status status);
 
 /// "White noise"; of a channel in `unit`: "Angle random walk" of an angular rate, "Velocity random

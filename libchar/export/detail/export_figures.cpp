@@ -44,7 +44,9 @@ AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
   if (!c.value && c.upper95 && *c.upper95 > 0) out.limit = *c.upper95 * factor;
   const double driving = driving_density(placed.model->gauss_markov);
   // An undetermined process says no more of slow noise than the terms' limits do.
-  if (term != Term::walk || !(driving > 0) || doubted(placed.model->gauss_markov.status))
+  const Status status = placed.model->gauss_markov.status;
+  if (term != Term::walk || !(driving > 0) || status == Status::undetermined ||
+      status == Status::misfit)
     return out;
   out.value = std::hypot(out.value.value_or(0), driving * factor);
   out.driven = true;

@@ -206,7 +206,7 @@ std::vector<RunMark> marks_of(const ReplayResult& r, double end_s) {
     add_mark(out,
              {"fault",
               fault_label(r, fault),
-              fault.sensor < r.sensors.size() ? std::optional(fault.sensor) : std::nullopt,
+              fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "",
               fault.from_s,
               fault.to_s},
              r.start_s,

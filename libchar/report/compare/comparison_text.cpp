@@ -9,42 +9,49 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/report_rows.hpp"
 #include "libchar/report/detail/tables/scores.hpp"
 
 namespace libchar {
 namespace {
 
-Json side(const AlgorithmSummary* one) {
-  if (one == nullptr) return nullptr;
-  return {{"status", one->ran ? "ran" : "skipped"},
-          {"why", one->ran ? Json(nullptr) : Json(json_text(one->why))},
-          {"rmse", json_number(one->rmse)},
-          {"rmse_ci95", interval_json(one->rmse_ci95)},
-          {"regret", json_number(one->regret)},
-          {"ns_per_sample", json_number(one->ns_per_sample)},
-          {"peak_bytes", json_number(one->peak_bytes)}};
+template <const ReplayReport::Algorithm* ComparedAlgorithm::*Side>
+void write_side(const Field& row, const ComparedAlgorithm& compared, std::vector<Entry>& out) {
+  static const Fields<ReplayReport::Algorithm> rows =
+      selected(ReplayReport::Algorithm::fields(),
+               {"status", "why", "rmse", "rmse_ci95", "regret", "ns_per_sample", "peak_bytes"},
+               Written::always);
+  const ReplayReport::Algorithm* const one = compared.*Side;
+  out.push_back(one == nullptr ? Entry{std::string(row.key)}
+                               : part_entry(std::string(row.key), entries_of(rows, *one)));
 }
 
-Json report(const ReplaySummary& r) {
-  return {{"file", json_text(r.file)},
-          {"program", r.program.empty() ? Json(nullptr) : Json(json_text(r.program))},
-          {"scene", json_text(r.scene_name.empty() ? r.scene_file : r.scene_name)},
-          {"best", r.best.empty() ? Json(nullptr) : Json(json_text(r.best))}};
-}
+const Fields<ComparedAlgorithm> kComparedFields = always(Fields<ComparedAlgorithm>{
+    field<&ComparedAlgorithm::label>("label"),
+    written<ComparedAlgorithm, write_side<&ComparedAlgorithm::a>>("a", ""),
+    written<ComparedAlgorithm, write_side<&ComparedAlgorithm::b>>("b", ""),
+    field<&ComparedAlgorithm::difference>("difference"),
+    field<&ComparedAlgorithm::rmse_change>("rmse_change"),
+    field<&ComparedAlgorithm::ns_change>("ns_per_sample_change"),
+    field<&ComparedAlgorithm::bytes_change>("peak_bytes_change"),
+});
 
-Json sentences(const std::vector<std::string>& list) {
-  Json out = Json::array();
-  for (const std::string& sentence : list) out.push_back(json_text(sentence));
-  return out;
-}
+const Fields<ReplayReport> kSideFields = always(Fields<ReplayReport>{
+    field<&ReplayReport::file>("file"),
+    field_or_null<&ReplayReport::head, &DocumentHead::program>("program"),
+    computed<[](const ReplayReport& report) { return report.scene_title(); }>("scene"),
+    field_or_null<&ReplayReport::best>("best"),
+});
 
-const AlgorithmSummary& known(const AlgorithmSummary* one) {
-  static const AlgorithmSummary kNothing = [] {
-    AlgorithmSummary out;
-    out.rmse = out.regret = out.ns_per_sample = out.peak_bytes = kNone;
-    return out;
-  }();
-  return one != nullptr && one->ran ? *one : kNothing;
+/// What is compared of a method: NaN where it did not run.
+struct Scores {
+  double rmse = kNone, ns_per_sample = kNone, peak_bytes = kNone;
+};
+Scores scores_of(const ReplayReport::Algorithm* one) {
+  if (one == nullptr || !one->ran) return {};
+  return {one->rmse,
+          one->ns_per_sample,
+          one->peak_bytes ? static_cast<double>(*one->peak_bytes) : kNone};
 }
 
 /// "+4.62 %", "0 %"; "–" for no number.
@@ -68,13 +75,13 @@ std::string side_of(const ComparedAlgorithm& row) {
 namespace {
 
 Table compared_table(const Comparison& c) {
-  const std::string score = c.a.has_reference ? "RMSE" : "leave-one-out RMS";
+  const std::string score = c.a.reference ? "RMSE" : "leave-one-out RMS";
   Table out("algorithm|" + score + " A|" + score +
             " B|change|a sample A|B|change|memory A|B|error of B");
   for (const ComparedAlgorithm& row : c.algorithms) {
-    const AlgorithmSummary &a = known(row.a), &b = known(row.b);
-    if (!a.ran && !b.ran && row.a != nullptr && row.b != nullptr) continue;
     const std::string where = side_of(row);
+    if (where == "skipped in both") continue;
+    const Scores a = scores_of(row.a), b = scores_of(row.b);
     out.add({row.label,
              brief_text(a.rmse, 5),
              brief_text(b.rmse, 5),
@@ -91,32 +98,30 @@ Table compared_table(const Comparison& c) {
 
 }  // namespace
 
-Json comparison_json(const Comparison& c) {
-  Json out = {{"a", report(c.a)},
-              {"b", report(c.b)},
-              {"verdict", json_text(c.verdict)},
-              {"score", c.a.has_reference ? "rmse" : "predictive_rms"},
-              {"unlike", sentences(c.unlike)},
-              {"remarks", sentences(c.remarks)},
-              {"algorithms", Json::array()}};
-  for (const ComparedAlgorithm& row : c.algorithms)
-    out["algorithms"].push_back({{"label", json_text(row.label)},
-                                 {"a", side(row.a)},
-                                 {"b", side(row.b)},
-                                 {"difference", name_of(row.difference)},
-                                 {"rmse_change", json_number(row.rmse_change)},
-                                 {"ns_per_sample_change", json_number(row.ns_change)},
-                                 {"peak_bytes_change", json_number(row.bytes_change)}});
-  return out;
+const Fields<Comparison>& comparison_fields() {
+  using T = Comparison;
+  static const Fields<T> rows = always(Fields<T>{
+      part<&T::a>("a", kSideFields),
+      part<&T::b>("b", kSideFields),
+      field<&T::verdict>("verdict"),
+      computed<[](const T& c) { return c.a.reference ? "rmse" : "predictive_rms"; }>("score"),
+      field<&T::unlike>("unlike"),
+      field<&T::remarks>("remarks"),
+      list_of<&T::algorithms>("algorithms", kComparedFields),
+  });
+  return rows;
+}
+
+Json comparison_json(const Comparison& comparison) {
+  return document_of(comparison_fields(), comparison);
 }
 
 std::string comparison_text(const Comparison& c, std::size_t width) {
-  std::string out =
-      fmt::format("A: {}: {}\nB: {}: {}\n",
-                  printable(c.a.file),
-                  printable(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
-                  printable(c.b.file),
-                  printable(c.b.scene_name.empty() ? c.b.scene_file : c.b.scene_name));
+  std::string out = fmt::format("A: {}: {}\nB: {}: {}\n",
+                                printable(c.a.file),
+                                printable(c.a.scene_title()),
+                                printable(c.b.file),
+                                printable(c.b.scene_title()));
   for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
   for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
   return out + "\n" + terminal_table(compared_table(c), {width}, "") + "\n" + printable(c.verdict) +
@@ -124,14 +129,13 @@ std::string comparison_text(const Comparison& c, std::size_t width) {
 }
 
 std::string comparison_markdown(const Comparison& c) {
-  std::string out =
-      fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
-                  markdown_text(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
-                  markdown_text(c.verdict),
-                  markdown_text(c.a.file),
-                  markdown_text(c.a.program),
-                  markdown_text(c.b.file),
-                  markdown_text(c.b.program));
+  std::string out = fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
+                                markdown_text(c.a.scene_title()),
+                                markdown_text(c.verdict),
+                                markdown_text(c.a.file),
+                                markdown_text(c.a.head.program),
+                                markdown_text(c.b.file),
+                                markdown_text(c.b.head.program));
   const char* heads[] = {"These are not two replays of one scene:", "What else differs:"};
   const std::vector<std::string>* lists[] = {&c.unlike, &c.remarks};
   for (std::size_t i = 0; i < 2; ++i) {

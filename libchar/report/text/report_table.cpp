@@ -43,9 +43,9 @@ std::vector<const ReportedChannel*> chosen_channels(const ReportedCharacterizati
   return out;
 }
 
-std::vector<const AlgorithmSummary*> best_first(const ReplaySummary& report) {
-  std::vector<const AlgorithmSummary*> out;
-  for (const AlgorithmSummary& a : report.algorithms)
+std::vector<const ReplayReport::Algorithm*> best_first(const ReplayReport& report) {
+  std::vector<const ReplayReport::Algorithm*> out;
+  for (const ReplayReport::Algorithm& a : report.algorithms)
     if (a.ran) out.push_back(&a);
   std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) {
     return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
@@ -77,12 +77,12 @@ std::string coefficient_table(const ReportedCharacterization& report,
   return table_text(out, format);
 }
 
-std::string ranking_table(const ReplaySummary& report, TableFormat format) {
+std::string ranking_table(const ReplayReport& report, TableFormat format) {
   Table out("algorithm||||regret|a sample|memory",
             "algorithm|bound||unit|regret|ns_per_sample|peak_bytes");
   const std::string unit = report.inputs.empty() ? "" : report.inputs[0].unit;
-  out.columns[2] = score_column(report.has_reference, unit);
-  for (const AlgorithmSummary* a : best_first(report)) {
+  out.columns[2] = score_column(report.reference.has_value(), unit);
+  for (const ReplayReport::Algorithm* a : best_first(report)) {
     Cell name(a->label);
     if (a->bound) name.sign = "(bound)";
     out.add({name,
@@ -91,7 +91,7 @@ std::string ranking_table(const ReplaySummary& report, TableFormat format) {
              unit,
              regret_cell(a->regret),
              time_cell(a->ns_per_sample),
-             memory_cell(a->peak_bytes)});
+             memory_cell(a->peak_bytes ? static_cast<double>(*a->peak_bytes) : kNone)});
   }
   return table_text(out, format);
 }

@@ -6,7 +6,7 @@
 
 #include "libchar/characterize/compare/reported_characterization.hpp"
 #include "libchar/core/table/table.hpp"
-#include "libchar/replay/replay_summary.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
 
@@ -18,6 +18,6 @@ std::string coefficient_table(const ReportedCharacterization& report,
                               TableFormat format);
 
 /// The methods of a replay, best first; bounds are said to be some.
-std::string ranking_table(const ReplaySummary& report, TableFormat format);
+std::string ranking_table(const ReplayReport& report, TableFormat format);
 
 }  // namespace libchar

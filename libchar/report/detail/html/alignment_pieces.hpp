@@ -12,6 +12,5 @@ namespace libchar {
 std::string alignment_text(const ReplayView& view, const TextLook& look);
 std::string alignment_markdown(const ReplayView& view);
 std::string alignment_html(const ReplayView& view);
-Json alignment_json(const ReplayResult& result);
 
 }  // namespace libchar

@@ -93,7 +93,8 @@ Cell headline_cell(const Coefficient& c, Term term, const std::string& unit) {
   if (!c.value && !c.upper95) return "–";
   const TermCells cells = term_cells(c, term, unit);
   Cell out = Cell::of(headline(cells), c);
-  if (doubted(c.status)) out.unit += out.unit.empty() ? "?" : " ?";
+  if (const Tint tint = tint_of(c.status); tint == Tint::doubtful || tint == Tint::bad)
+    out.unit += out.unit.empty() ? "?" : " ?";
   if (!c.value) out.tint = Tint::absent;
   return out;
 }

@@ -209,9 +209,9 @@ Table sensors_table(const ReplayView& view) {
              s.offset == 0 ? Cell() : Cell::number(s.offset),
              Cell::shown(s.missing > 0 ? percent_text(s.missing) : "none", s.missing),
              r.scene.tilt ? "" : h,
-             s.constant  ? "never changed"
-             : s.copy_of ? "the same as " + r.sensors[*s.copy_of].name
-                         : ""});
+             s.constant           ? "never changed"
+             : !s.copy_of.empty() ? "the same as " + s.copy_of
+                                  : ""});
   }
   return out;
 }
