@@ -388,14 +388,9 @@ void Fusing::look_ahead() {
   for (const auto& [name, value] : algorithm_.options) settings.set(name, value);
   if (!entry_->looks_ahead(settings)) return;
   PassProgress passing(progress_, "looking ahead");
-  instants_->pass(
-      0,
-      instants_->info().count,
-      block(),
-      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
-        runner_->look(given(samples));
-      },
-      passing);
+  instants_->pass(0, instants_->info().count, block(), passing, [&](const InstantBlock& b) {
+    runner_->look(given(b.samples));
+  });
   runner_->finish_learning();
 }
 
@@ -551,13 +546,7 @@ FuseResult Fusing::run(FusedSink& sink) {
   sink.begin(columns());
   PassProgress named(progress_, "fusing");
   instants_->pass(
-      0,
-      info.count,
-      block(),
-      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
-        take(samples, sink);
-      },
-      named);
+      0, info.count, block(), named, [&](const InstantBlock& b) { take(b.samples, sink); });
   tell();
   return std::move(result_);
 }
