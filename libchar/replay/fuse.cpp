@@ -111,7 +111,7 @@ class Fusing {
     make_runner();
   }
 
-  FuseResult run(FusedSink& sink);
+  FuseResult run(ColumnSink& sink);
 
  private:
   void find_entry();
@@ -128,7 +128,7 @@ class Fusing {
   void check_rate();
   LogInfo columns() const;
   std::size_t block() const { return options_.block > 0 ? options_.block : kFusedBlock; }
-  void take(const Eigen::MatrixXd& samples, FusedSink& sink);
+  void take(const Eigen::MatrixXd& samples, ColumnSink& sink);
   const Eigen::MatrixXd& given(const Eigen::MatrixXd& samples);
   void note_faults(std::int64_t end);
   void fill_flags(const Eigen::MatrixXd& samples, std::size_t first);
@@ -463,7 +463,7 @@ void Fusing::note_faults(std::int64_t end) {
   }
 }
 
-void Fusing::take(const Eigen::MatrixXd& samples, FusedSink& sink) {
+void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   const Eigen::MatrixXd& all = given(samples);
   const auto inputs = static_cast<Eigen::Index>(learnt_.inputs.size());
   const auto r = static_cast<std::size_t>(inputs);
@@ -531,7 +531,7 @@ void Fusing::tell() {
                          log->dropped());
 }
 
-FuseResult Fusing::run(FusedSink& sink) {
+FuseResult Fusing::run(ColumnSink& sink) {
   const InstantsInfo& info = instants_->info();
   result_.log = info.logs[0];
   result_.file = learnt_.file;
@@ -555,7 +555,7 @@ FuseResult Fusing::run(FusedSink& sink) {
 
 FuseResult fuse(const std::string& log,
                 const LearntFusion& learnt,
-                FusedSink& sink,
+                ColumnSink& sink,
                 const FuseOptions& options,
                 Progress& progress) {
   if (read_once(log))
@@ -573,17 +573,6 @@ FuseResult fuse(const std::string& log,
                 "",
                 "where they have other names say so with `map`: SENSOR=CHANNEL");
   return Fusing(log, learnt, options, progress).run(sink);
-}
-
-void FusedWriter::begin(const LogInfo& columns) {
-  LogInfo info = columns;
-  info.file = path_;
-  writer_ = open_log_writer(path_, info, writing_);
-}
-
-std::vector<std::string> FusedWriter::finish() {
-  writer_->finish();
-  return writer_->files();
 }
 
 }  // namespace libchar

@@ -258,7 +258,7 @@ class Replay {
       if (detection_) detection_->push(b.samples);
       if (steps_ && plan_.live.empty()) steps_->push(b.samples);
       if (steps_ && !plan_.live.empty()) steps_->push(b.samples(plan_.live, Eigen::all));
-      if (workspace_.estimates != nullptr) give_estimates(b.truth);
+      if (workspace_.estimates != nullptr) give_estimates(b);
       if (blocks < kLeastTimed) kept_.push_back(b.samples);
     });
   }
@@ -302,25 +302,38 @@ class Replay {
   }
 
   void begin_estimates() {
-    std::vector<std::string> labels;
+    LogInfo info;
+    info.samples = info.rows = static_cast<std::uint64_t>(plan_.run_to - plan_.run_from);
+    info.time.rate_hz = frame_.rate_hz;
+    // Seconds from the recording's first sample, as everything else in the report.
+    info.channels.push_back({"t", "s", false});
+    const std::vector<InputResult> all = inputs();
+    for (const InputResult& input : all) info.channels.push_back({input.name, input.unit, false});
     for (const AlgorithmRun& run : runs_)
-      if (run.alive() && run.planned().asked) labels.push_back(run.planned().label);
-    workspace_.estimates->begin(labels,
-                                inputs(),
-                                frame_.rate_hz,
-                                frame_.start_s,
-                                static_cast<std::uint64_t>(plan_.run_to - plan_.run_from));
+      if (run.alive() && run.planned().asked)
+        for (const InputResult& input : all)
+          info.channels.push_back(
+              {all.size() == 1 ? run.planned().label : run.planned().label + " " + input.name,
+               input.unit,
+               false});
+    workspace_.estimates->begin(info);
   }
 
-  void give_estimates(const Eigen::MatrixXd& truth) {
-    std::vector<std::vector<double>> columns;
+  void give_estimates(const InstantBlock& b) {
+    std::vector<std::vector<double>> columns(1);
+    for (Eigen::Index k = 0; k < b.samples.cols(); ++k)
+      columns[0].push_back(frame_.start_s +
+                           static_cast<double>(b.first - plan_.run_from + k) / frame_.rate_hz);
     const auto add = [&](const auto& row) { columns.emplace_back(row.begin(), row.end()); };
-    for (Eigen::Index j = 0; j < truth.rows(); ++j)
-      add((truth.row(j) * frame_.output_scale).eval());
+    if (b.truth.rows() == 0)
+      columns.resize(1 + inputs().size(), std::vector<double>(columns[0].size(), kMissing));
+    for (Eigen::Index j = 0; j < b.truth.rows(); ++j)
+      add((b.truth.row(j) * frame_.output_scale).eval());
     for (const AlgorithmRun& run : runs_)
       if (run.alive() && run.planned().asked)
         for (Eigen::Index j = 0; j < run.estimates().rows(); ++j) add(run.estimates().row(j));
-    workspace_.estimates->block(columns);
+    const std::vector<std::span<const double>> spans(columns.begin(), columns.end());
+    workspace_.estimates->block(spans);
   }
 
   // After everything else: what the algorithms hold then is of no interest.
