@@ -111,7 +111,7 @@ class Fusing {
     make_runner();
   }
 
-  FuseResult run(FusedSink& sink);
+  FuseResult run(ColumnSink& sink);
 
  private:
   void find_entry();
@@ -128,7 +128,7 @@ class Fusing {
   void check_rate();
   LogInfo columns() const;
   std::size_t block() const { return options_.block > 0 ? options_.block : kFusedBlock; }
-  void take(const Eigen::MatrixXd& samples, FusedSink& sink);
+  void take(const Eigen::MatrixXd& samples, ColumnSink& sink);
   const Eigen::MatrixXd& given(const Eigen::MatrixXd& samples);
   void note_faults(std::int64_t end);
   void fill_flags(const Eigen::MatrixXd& samples, std::size_t first);
@@ -388,14 +388,9 @@ void Fusing::look_ahead() {
   for (const auto& [name, value] : algorithm_.options) settings.set(name, value);
   if (!entry_->looks_ahead(settings)) return;
   PassProgress passing(progress_, "looking ahead");
-  instants_->pass(
-      0,
-      instants_->info().count,
-      block(),
-      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
-        runner_->look(given(samples));
-      },
-      passing);
+  instants_->pass(0, instants_->info().count, block(), passing, [&](const InstantBlock& b) {
+    runner_->look(given(b.samples));
+  });
   runner_->finish_learning();
 }
 
@@ -468,7 +463,7 @@ void Fusing::note_faults(std::int64_t end) {
   }
 }
 
-void Fusing::take(const Eigen::MatrixXd& samples, FusedSink& sink) {
+void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   const Eigen::MatrixXd& all = given(samples);
   const auto inputs = static_cast<Eigen::Index>(learnt_.inputs.size());
   const auto r = static_cast<std::size_t>(inputs);
@@ -536,7 +531,7 @@ void Fusing::tell() {
                          log->dropped());
 }
 
-FuseResult Fusing::run(FusedSink& sink) {
+FuseResult Fusing::run(ColumnSink& sink) {
   const InstantsInfo& info = instants_->info();
   result_.log = info.logs[0];
   result_.file = learnt_.file;
@@ -551,13 +546,7 @@ FuseResult Fusing::run(FusedSink& sink) {
   sink.begin(columns());
   PassProgress named(progress_, "fusing");
   instants_->pass(
-      0,
-      info.count,
-      block(),
-      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
-        take(samples, sink);
-      },
-      named);
+      0, info.count, block(), named, [&](const InstantBlock& b) { take(b.samples, sink); });
   tell();
   return std::move(result_);
 }
@@ -566,7 +555,7 @@ FuseResult Fusing::run(FusedSink& sink) {
 
 FuseResult fuse(const std::string& log,
                 const LearntFusion& learnt,
-                FusedSink& sink,
+                ColumnSink& sink,
                 const FuseOptions& options,
                 Progress& progress) {
   if (read_once(log))
@@ -584,17 +573,6 @@ FuseResult fuse(const std::string& log,
                 "",
                 "where they have other names say so with `map`: SENSOR=CHANNEL");
   return Fusing(log, learnt, options, progress).run(sink);
-}
-
-void FusedWriter::begin(const LogInfo& columns) {
-  LogInfo info = columns;
-  info.file = path_;
-  writer_ = open_log_writer(path_, info, writing_);
-}
-
-std::vector<std::string> FusedWriter::finish() {
-  writer_->finish();
-  return writer_->files();
 }
 
 }  // namespace libchar

@@ -12,7 +12,7 @@
 
 #include "libchar/core/process/progress.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/log/write.hpp"
+#include "libchar/replay/column_sink.hpp"
 #include "libchar/replay/fusion_file.hpp"
 #include "libchar/replay/replay_result.hpp"
 
@@ -49,38 +49,13 @@ struct FuseResult {
   Warnings warnings;  ///< of the fusion; those of the log are in `log`
 };
 
-/// Receives what was fused, in order of time.
-struct FusedSink {
-  virtual ~FusedSink() = default;
-  /// Columns and time base of what comes: the inputs, their standard deviations, a flag a sensor (1: in
-  /// use, 0: taken out by the algorithm, missing: no sample).
-  virtual void begin(const LogInfo& columns) = 0;
-  virtual void block(std::span<const std::span<const double>> columns) = 0;
-};
-
-/// Throws Error(input) when log and file do not fit, Error(usage) for an algorithm or sensor that the
-/// file does not have.
+/// Gives `sink` the inputs, their standard deviations, and a flag a sensor (1: in use, 0: taken out by the
+/// algorithm, missing: no sample). Throws Error(input) when log and file do not fit, Error(usage) for an
+/// algorithm or sensor that the file does not have.
 FuseResult fuse(const std::string& log,
                 const LearntFusion& learnt,
-                FusedSink& sink,
+                ColumnSink& sink,
                 const FuseOptions& options = {},
                 Progress& progress = no_progress());
-
-/// Writes what was fused as a log; nothing appears before finish().
-class FusedWriter final : public FusedSink {
- public:
-  FusedWriter(std::string path, const WriteOptions& writing)
-      : path_(std::move(path)), writing_(writing) {}
-  void begin(const LogInfo& columns) override;
-  void block(std::span<const std::span<const double>> columns) override { writer_->write(columns); }
-  /// Returns the files that were written. Throws Error(output).
-  std::vector<std::string> finish();
-  std::vector<std::string> losses() const { return writer_->losses(); }
-
- private:
-  std::string path_;
-  WriteOptions writing_;
-  std::unique_ptr<LogWriter> writer_;
-};
 
 }  // namespace libchar

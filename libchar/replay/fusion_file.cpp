@@ -19,55 +19,43 @@ constexpr const char* kFormat = "fusion";
 constexpr Word kInterpolations[] = {{"sinc"}, {"cubic"}};
 constexpr Word kTrends[] = {{"none"}, {"mean"}, {"line"}};
 
-const Fields<LearntInput>& input_fields() {
-  static const Fields<LearntInput> rows = {
-      field<&LearntInput::name>("name", {.meaning = "of the estimate's column", .required = true}),
-      field<&LearntInput::unit>("unit", {.meaning = "of the estimate", .otherwise = "not known"}),
-  };
-  return rows;
-}
+const Fields<LearntInput> kLearntInputFields = {
+    field<&LearntInput::name>("name", {.meaning = "of the estimate's column", .required = true}),
+    field<&LearntInput::unit>("unit", {.meaning = "of the estimate", .otherwise = "not known"}),
+};
 
-const Fields<LearntFrom>& source_fields() {
-  static const Fields<LearntFrom> rows = {
-      field<&LearntFrom::path>("path", {.meaning = "of a recording or reference"}),
-      field<&LearntFrom::sha256>("sha256", {.meaning = "of its content"}),
-  };
-  return rows;
-}
+const Fields<LearntFrom> kLearntFromFields = {
+    field<&LearntFrom::path>("path", {.meaning = "of a recording or reference"}),
+    field<&LearntFrom::sha256>("sha256", {.meaning = "of its content"}),
+};
 
-const Fields<LearntTilt>& learnt_tilt_fields() {
-  static const Fields<LearntTilt> rows = {
-      field<&LearntTilt::gyroscope>("gyroscope", {.meaning = "name of a sensor"}),
-      field<&LearntTilt::accelerometer_x>("accelerometer_x", {.meaning = "name of a sensor"}),
-      field<&LearntTilt::accelerometer_z>("accelerometer_z", {.meaning = "name of a sensor"}),
-  };
-  return rows;
-}
+const Fields<LearntTilt> kLearntTiltFields = {
+    field<&LearntTilt::gyroscope>("gyroscope", {.meaning = "name of a sensor"}),
+    field<&LearntTilt::accelerometer_x>("accelerometer_x", {.meaning = "name of a sensor"}),
+    field<&LearntTilt::accelerometer_z>("accelerometer_z", {.meaning = "name of a sensor"}),
+};
 
-const Fields<LearntAlignment>& alignment_fields() {
-  static const Fields<LearntAlignment> rows = {
-      field<&LearntAlignment::delay_samples>(
-          "delay_samples",
-          {.range = {-8, 8},
-           .meaning = "the sensor is so late, in samples at `rate_hz`",
-           .otherwise = "0"}),
-      field<&LearntAlignment::bias>("bias", {.meaning = "in units of the input", .otherwise = "0"}),
-      field<&LearntAlignment::gain>("gain",
-                                    {.range = {-1, std::numeric_limits<double>::max(), true},
-                                     .meaning = "beyond one",
-                                     .otherwise = "0"}),
-      field<&LearntAlignment::cross>(
-          "cross", {.meaning = "share of each further axis", .otherwise = "none"}),
-      field<&LearntAlignment::low>(
-          "low",
-          {.meaning = "samples at or below are saturated: of the sensor, then of its further axes; "
-                      "−1e300: no limit",
-           .otherwise = "no limits"}),
-      field<&LearntAlignment::high>(
-          "high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
-  };
-  return rows;
-}
+const Fields<LearntAlignment> kLearntAlignmentFields = {
+    field<&LearntAlignment::delay_samples>(
+        "delay_samples",
+        {.range = {-8, 8},
+         .meaning = "the sensor is so late, in samples at `rate_hz`",
+         .otherwise = "0"}),
+    field<&LearntAlignment::bias>("bias", {.meaning = "in units of the input", .otherwise = "0"}),
+    field<&LearntAlignment::gain>("gain",
+                                  {.range = {-1, std::numeric_limits<double>::max(), true},
+                                   .meaning = "beyond one",
+                                   .otherwise = "0"}),
+    field<&LearntAlignment::cross>("cross",
+                                   {.meaning = "share of each further axis", .otherwise = "none"}),
+    field<&LearntAlignment::low>(
+        "low",
+        {.meaning = "samples at or below are saturated: of the sensor, then of its further axes; "
+                    "−1e300: no limit",
+         .otherwise = "no limits"}),
+    field<&LearntAlignment::high>(
+        "high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
+};
 
 // ---- options and learnt numbers: keys that the algorithm names ----
 
@@ -200,96 +188,83 @@ class FileCheck {
 
 // ---- the keys of the file, in three parts ----
 
-const Fields<LearntFusion>& head_rows() {
-  static const Fields<LearntFusion> rows = {
-      constant<LearntFusion>("format", std::string(kFormat)),
-      constant<LearntFusion>("version", std::uint64_t{1}),
-      tool_row<LearntFusion>(),
-      field<&LearntFusion::name>("name", {.meaning = "of the scene"}),
-      list_of<&LearntFusion::learnt_from>(
-          "learnt_from",
-          source_fields(),
-          {.meaning = "files it was learnt from: their path and SHA-256",
-           .form = Entry::Form::flow}),
-      field<&LearntFusion::rate_hz>("rate_hz",
-                                    {.unit = "Hz",
-                                     .range = kPositive,
-                                     .meaning = "of the instants that were fused",
-                                     .written = Written::always,
-                                     .required = true}),
-  };
-  return rows;
-}
+const Fields<LearntFusion> kFusionHead = {
+    constant<LearntFusion>("format", std::string(kFormat)),
+    constant<LearntFusion>("version", std::uint64_t{1}),
+    tool_row<LearntFusion>(),
+    field<&LearntFusion::name>("name", {.meaning = "of the scene"}),
+    list_of<&LearntFusion::learnt_from>(
+        "learnt_from",
+        kLearntFromFields,
+        {.meaning = "files it was learnt from: their path and SHA-256", .form = Entry::Form::flow}),
+    field<&LearntFusion::rate_hz>("rate_hz",
+                                  {.unit = "Hz",
+                                   .range = kPositive,
+                                   .meaning = "of the instants that were fused",
+                                   .written = Written::always,
+                                   .required = true}),
+};
 
 // How samples become instants.
-const Fields<LearntFusion>& instant_rows() {
-  static const Fields<LearntFusion> rows = {
-      field<&LearntFusion::average_s>("average_s",
-                                      {.unit = "s",
-                                       .range = kPositive,
-                                       .meaning = "an instant is the mean over so long",
-                                       .otherwise = "one sample"}),
-      field<&LearntFusion::resample_hz>(
-          "resample_hz",
-          {.unit = "Hz",
-           .range = kPositive,
-           .meaning = "samples are interpolated to this rate by their stamps",
-           .otherwise = "they are not"}),
-      field<&LearntFusion::preparation, &ScenePreparation::detrend>(
-          "detrend",
-          {.words = kTrends,
-           .meaning = "subtracted from each sensor, of the whole log",
-           .otherwise = "none"}),
-      field<&LearntFusion::preparation, &ScenePreparation::from_hz>(
-          "high_pass_hz",
-          {.unit = "Hz",
-           .range = kNotNegative,
-           .meaning = "corner of a high-pass that each sensor goes through",
-           .otherwise = "no filter"}),
-      field<&LearntFusion::preparation, &ScenePreparation::to_hz>(
-          "low_pass_hz",
-          {.unit = "Hz",
-           .range = kNotNegative,
-           .meaning = "corner of the low-pass behind it",
-           .otherwise = "none"}),
-      field<&LearntFusion::learning_instants>(
-          "learning_instants", {.meaning = "with a reference, before the run", .otherwise = "0"}),
-      field<&LearntFusion::fault_free_s>("fault_free_s",
-                                         {.unit = "s",
-                                          .range = kNotNegative,
-                                          .meaning = "so long no sensor failed at the start",
-                                          .otherwise = "0: not known"}),
-  };
-  return rows;
-}
+const Fields<LearntFusion> kFusionInstants = {
+    field<&LearntFusion::average_s>("average_s",
+                                    {.unit = "s",
+                                     .range = kPositive,
+                                     .meaning = "an instant is the mean over so long",
+                                     .otherwise = "one sample"}),
+    field<&LearntFusion::resample_hz>(
+        "resample_hz",
+        {.unit = "Hz",
+         .range = kPositive,
+         .meaning = "samples are interpolated to this rate by their stamps",
+         .otherwise = "they are not"}),
+    field<&LearntFusion::preparation, &ScenePreparation::detrend>(
+        "detrend",
+        {.words = kTrends,
+         .meaning = "subtracted from each sensor, of the whole log",
+         .otherwise = "none"}),
+    field<&LearntFusion::preparation, &ScenePreparation::from_hz>(
+        "high_pass_hz",
+        {.unit = "Hz",
+         .range = kNotNegative,
+         .meaning = "corner of a high-pass that each sensor goes through",
+         .otherwise = "no filter"}),
+    field<&LearntFusion::preparation, &ScenePreparation::to_hz>(
+        "low_pass_hz",
+        {.unit = "Hz",
+         .range = kNotNegative,
+         .meaning = "corner of the low-pass behind it",
+         .otherwise = "none"}),
+    field<&LearntFusion::learning_instants>(
+        "learning_instants", {.meaning = "with a reference, before the run", .otherwise = "0"}),
+    field<&LearntFusion::fault_free_s>("fault_free_s",
+                                       {.unit = "s",
+                                        .range = kNotNegative,
+                                        .meaning = "so long no sensor failed at the start",
+                                        .otherwise = "0: not known"}),
+};
 
-const Fields<LearntFusion>& content_rows() {
-  static const Fields<LearntFusion> rows = {
-      list_of<&LearntFusion::inputs>("inputs",
-                                     input_fields(),
-                                     {.meaning = "what is estimated: `name`, `unit`",
-                                      .required = true,
-                                      .form = Entry::Form::flow}),
-      field<&LearntFusion::interpolation>("interpolation",
-                                          {.words = kInterpolations,
-                                           .meaning = "of the alignment",
-                                           .otherwise = "nothing is aligned"}),
-      part<&LearntFusion::tilt>("tilt",
-                                learnt_tilt_fields(),
-                                {.meaning = "sensors of a tilt", .form = Entry::Form::flow}),
-      list_of<&LearntFusion::sensors>("sensors",
-                                      fusion_sensor_fields(),
-                                      {.meaning = "in their order (below)", .required = true}),
-      field<&LearntFusion::recommended>(
-          "recommended", {.meaning = "label of the best method", .otherwise = "none"}),
-      list_of<&LearntFusion::algorithms>("algorithms",
-                                         fusion_algorithm_fields(),
-                                         {.meaning = "that ran (below)", .required = true}),
-      custom<LearntFusion, read_complete, write_complete>(
-          "complete", "true", {.meaning = "the last line: a file without it is cut off"}),
-  };
-  return rows;
-}
+const Fields<LearntFusion> kFusionContent = {
+    list_of<&LearntFusion::inputs>("inputs",
+                                   kLearntInputFields,
+                                   {.meaning = "what is estimated: `name`, `unit`",
+                                    .required = true,
+                                    .form = Entry::Form::flow}),
+    field<&LearntFusion::interpolation>("interpolation",
+                                        {.words = kInterpolations,
+                                         .meaning = "of the alignment",
+                                         .otherwise = "nothing is aligned"}),
+    part<&LearntFusion::tilt>(
+        "tilt", kLearntTiltFields, {.meaning = "sensors of a tilt", .form = Entry::Form::flow}),
+    list_of<&LearntFusion::sensors>(
+        "sensors", fusion_sensor_fields(), {.meaning = "in their order (below)", .required = true}),
+    field<&LearntFusion::recommended>("recommended",
+                                      {.meaning = "label of the best method", .otherwise = "none"}),
+    list_of<&LearntFusion::algorithms>(
+        "algorithms", fusion_algorithm_fields(), {.meaning = "that ran (below)", .required = true}),
+    custom<LearntFusion, read_complete, write_complete>(
+        "complete", "true", {.meaning = "the last line: a file without it is cut off"}),
+};
 
 }  // namespace
 
@@ -319,7 +294,7 @@ const Fields<LearntSensor>& fusion_sensor_fields() {
                                                {.meaning = "their times of correlation, in s"}),
       field<&LearntSensor::cross>("cross", {.meaning = "channels of the device's further axes"}),
       part<&LearntSensor::alignment>(
-          "alignment", alignment_fields(), {.meaning = "what is taken out of the sensor"}),
+          "alignment", kLearntAlignmentFields, {.meaning = "what is taken out of the sensor"}),
       field<&LearntSensor::step_noise>(
           "step_noise",
           {.range = kPositive,
@@ -353,12 +328,8 @@ const Fields<LearntAlgorithm>& fusion_algorithm_fields() {
 }
 
 const Fields<LearntFusion>& fusion_fields() {
-  static const Fields<LearntFusion> rows = [] {
-    Fields<LearntFusion> all = head_rows();
-    for (const auto* part : {&instant_rows(), &content_rows()})
-      all.rows.insert(all.rows.end(), part->rows.begin(), part->rows.end());
-    return all;
-  }();
+  static const Fields<LearntFusion> rows =
+      joined(joined(kFusionHead, kFusionInstants), kFusionContent);
   return rows;
 }
 

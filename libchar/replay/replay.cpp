@@ -183,14 +183,10 @@ class Replay {
     PassProgress passing(progress_, "learning");
     ++passes_;
     instants_.pass(
-        plan_.learn_from,
-        plan_.learn_to,
-        kLearningBlock,
-        [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+        plan_.learn_from, plan_.learn_to, kLearningBlock, passing, [&](const InstantBlock& b) {
           for (AlgorithmRun& run : runs_)
-            if (run.planned().learns_before()) run.learn(samples, truth);
-        },
-        passing);
+            if (run.planned().learns_before()) run.learn(b.samples, b.truth);
+        });
   }
 
   void learn_on_run() {
@@ -198,21 +194,17 @@ class Replay {
                          plan_.run_learning_pass ? "learning the bounds" : "looking ahead");
     ++passes_;
     instants_.pass(
-        plan_.run_from,
-        plan_.run_to,
-        kLearningBlock,
-        [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+        plan_.run_from, plan_.run_to, kLearningBlock, passing, [&](const InstantBlock& b) {
           for (AlgorithmRun& run : runs_)
-            if (run.planned().learns_run()) run.learn(samples, truth);
+            if (run.planned().learns_run()) run.learn(b.samples, b.truth);
           for (AlgorithmRun& run : runs_)
-            if (run.planned().looks_ahead()) run.look(samples);
+            if (run.planned().looks_ahead()) run.look(b.samples);
           for (const auto& blind : blind_)
-            if (blind && blind->looks_ahead()) blind->look(first - plan_.run_from, samples);
+            if (blind && blind->looks_ahead()) blind->look(b.first - plan_.run_from, b.samples);
           if (!plan_.run_learning_pass) return;
-          const Eigen::MatrixXd& healthy = without_faults(first, samples);
-          for (AlgorithmRun& run : optimum_) run.learn(healthy, truth);
-        },
-        passing);
+          const Eigen::MatrixXd& healthy = without_faults(b.first, b.samples);
+          for (AlgorithmRun& run : optimum_) run.learn(healthy, b.truth);
+        });
   }
 
   // The optimum knows which samples are those of a failed sensor, and leaves them out.
@@ -251,30 +243,24 @@ class Replay {
     if (!scene_.tilt) steps_.emplace(live.h(), plan_.run_to - plan_.run_from);
     if (!scene_.tilt) detection_.emplace(plan_, instants_.source().known_faults());
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
-    instants_.pass(
-        plan_.run_from,
-        plan_.run_to,
-        plan_.block,
-        [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-          for (AlgorithmRun& run : runs_) run.run(samples);
-          const Eigen::MatrixXd& healthy = without_faults(first, samples);
-          for (AlgorithmRun& run : optimum_) run.run(healthy);
-          const std::int64_t done = first - plan_.run_from;
-          const Eigen::Index skip =
-              std::clamp<std::int64_t>(plan_.warm_up - done, 0, samples.cols());
-          for (AlgorithmRun& run : runs_) run.score(done, truth, skip);
-          for (AlgorithmRun& run : optimum_) run.score(done, truth, skip);
-          for (const auto& blind : blind_)
-            if (blind) blind->run(done, samples, skip);
-          judge_sensors(samples, healthy, truth, skip);
-          tracker_.push(done, samples, truth, runs_);
-          if (detection_) detection_->push(samples);
-          if (steps_ && plan_.live.empty()) steps_->push(samples);
-          if (steps_ && !plan_.live.empty()) steps_->push(samples(plan_.live, Eigen::all));
-          if (workspace_.estimates != nullptr) give_estimates(truth);
-          if (blocks < kLeastTimed) kept_.push_back(samples);
-        },
-        passing);
+    instants_.pass(plan_.run_from, plan_.run_to, plan_.block, passing, [&](const InstantBlock& b) {
+      for (AlgorithmRun& run : runs_) run.run(b.samples);
+      const Eigen::MatrixXd& healthy = without_faults(b.first, b.samples);
+      for (AlgorithmRun& run : optimum_) run.run(healthy);
+      const std::int64_t done = b.first - plan_.run_from;
+      const Eigen::Index skip = std::clamp<std::int64_t>(plan_.warm_up - done, 0, b.samples.cols());
+      for (AlgorithmRun& run : runs_) run.score(done, b.truth, skip);
+      for (AlgorithmRun& run : optimum_) run.score(done, b.truth, skip);
+      for (const auto& blind : blind_)
+        if (blind) blind->run(done, b.samples, skip);
+      judge_sensors(b.samples, healthy, b.truth, skip);
+      tracker_.push(done, b.samples, b.truth, runs_);
+      if (detection_) detection_->push(b.samples);
+      if (steps_ && plan_.live.empty()) steps_->push(b.samples);
+      if (steps_ && !plan_.live.empty()) steps_->push(b.samples(plan_.live, Eigen::all));
+      if (workspace_.estimates != nullptr) give_estimates(b);
+      if (blocks < kLeastTimed) kept_.push_back(b.samples);
+    });
   }
 
   void judge_sensors(const Eigen::MatrixXd& samples,
@@ -316,25 +302,38 @@ class Replay {
   }
 
   void begin_estimates() {
-    std::vector<std::string> labels;
+    LogInfo info;
+    info.samples = info.rows = static_cast<std::uint64_t>(plan_.run_to - plan_.run_from);
+    info.time.rate_hz = frame_.rate_hz;
+    // Seconds from the recording's first sample, as everything else in the report.
+    info.channels.push_back({"t", "s", false});
+    const std::vector<InputResult> all = inputs();
+    for (const InputResult& input : all) info.channels.push_back({input.name, input.unit, false});
     for (const AlgorithmRun& run : runs_)
-      if (run.alive() && run.planned().asked) labels.push_back(run.planned().label);
-    workspace_.estimates->begin(labels,
-                                inputs(),
-                                frame_.rate_hz,
-                                frame_.start_s,
-                                static_cast<std::uint64_t>(plan_.run_to - plan_.run_from));
+      if (run.alive() && run.planned().asked)
+        for (const InputResult& input : all)
+          info.channels.push_back(
+              {all.size() == 1 ? run.planned().label : run.planned().label + " " + input.name,
+               input.unit,
+               false});
+    workspace_.estimates->begin(info);
   }
 
-  void give_estimates(const Eigen::MatrixXd& truth) {
-    std::vector<std::vector<double>> columns;
+  void give_estimates(const InstantBlock& b) {
+    std::vector<std::vector<double>> columns(1);
+    for (Eigen::Index k = 0; k < b.samples.cols(); ++k)
+      columns[0].push_back(frame_.start_s +
+                           static_cast<double>(b.first - plan_.run_from + k) / frame_.rate_hz);
     const auto add = [&](const auto& row) { columns.emplace_back(row.begin(), row.end()); };
-    for (Eigen::Index j = 0; j < truth.rows(); ++j)
-      add((truth.row(j) * frame_.output_scale).eval());
+    if (b.truth.rows() == 0)
+      columns.resize(1 + inputs().size(), std::vector<double>(columns[0].size(), kMissing));
+    for (Eigen::Index j = 0; j < b.truth.rows(); ++j)
+      add((b.truth.row(j) * frame_.output_scale).eval());
     for (const AlgorithmRun& run : runs_)
       if (run.alive() && run.planned().asked)
         for (Eigen::Index j = 0; j < run.estimates().rows(); ++j) add(run.estimates().row(j));
-    workspace_.estimates->block(columns);
+    const std::vector<std::span<const double>> spans(columns.begin(), columns.end());
+    workspace_.estimates->block(spans);
   }
 
   // After everything else: what the algorithms hold then is of no interest.

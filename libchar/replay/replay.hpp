@@ -9,23 +9,10 @@
 
 #include "libchar/core/process/heap_meter.hpp"
 #include "libchar/core/process/progress.hpp"
+#include "libchar/replay/column_sink.hpp"
 #include "libchar/replay/replay_result.hpp"
 
 namespace libchar {
-
-/// Receives the estimates of all algorithms that ran, in order of time.
-struct EstimateSink {
-  virtual ~EstimateSink() = default;
-  /// `labels`: the algorithms; one column a label and input.
-  virtual void begin(const std::vector<std::string>& labels,
-                     const std::vector<InputResult>& inputs,
-                     double rate_hz,
-                     double start_s,
-                     std::uint64_t instants) = 0;
-  /// Columns of consecutive instants: the truth (when there is a reference), then label by label,
-  /// input by input.
-  virtual void block(const std::vector<std::vector<double>>& columns) = 0;
-};
 
 struct ReplayOptions {
   std::vector<SceneAlgorithm> algorithms;          ///< win over the scene's list; `line` 0
@@ -45,7 +32,9 @@ struct ReplayOptions {
 struct ReplayWorkspace {
   HeapMeter* heap =
       nullptr;  ///< who can say how much memory an algorithm holds; none: it is not measured
-  EstimateSink* estimates = nullptr;  ///< who wants them; none: they are not kept
+  /// Who wants the estimates; none: they are not kept. Columns: t (seconds from the recording's first sample), the
+  /// true inputs (missing without a reference), then label by label, input by input.
+  ColumnSink* estimates = nullptr;
 };
 
 /// What would be done, in sentences; reads the recording once to know its length and rate.

@@ -10,6 +10,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/replay.hpp"
+#include "tests/replay/kept_columns.hpp"
 #include "tests/replay/scene_text.hpp"
 #include "tests/support/noise.hpp"
 
@@ -51,38 +52,6 @@ std::string four_sensors(const LogOptions& o = {}) {
   return text;
 }
 
-// The columns of what was made.
-struct Kept final : EstimateSink, FusedSink {
-  void begin(const std::vector<std::string>& all,
-             const std::vector<InputResult>& inputs,
-             double,
-             double,
-             std::uint64_t) override {
-    labels = all;
-    truths = inputs.size();
-  }
-  void block(const std::vector<std::vector<double>>& some) override {
-    columns.resize(some.size());
-    for (std::size_t c = 0; c < some.size(); ++c)
-      columns[c].insert(columns[c].end(), some[c].begin(), some[c].end());
-  }
-  void begin(const LogInfo& info) override { head = info; }
-  void block(std::span<const std::span<const double>> some) override {
-    columns.resize(some.size());
-    for (std::size_t c = 0; c < some.size(); ++c)
-      columns[c].insert(columns[c].end(), some[c].begin(), some[c].end());
-  }
-  const std::vector<double>& of(const std::string& label, bool reference = true) const {
-    for (std::size_t k = 0; k < labels.size(); ++k)
-      if (labels[k] == label) return columns[k + (reference ? truths : 0)];
-    throw std::runtime_error("no " + label);
-  }
-  std::vector<std::string> labels;
-  std::size_t truths = 0;
-  LogInfo head;
-  std::vector<std::vector<double>> columns;
-};
-
 const std::string kScene =
     "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, {name: b, noise: 0.02}, c, d]\n";
 
@@ -99,13 +68,13 @@ struct FuseBench {
     result = replay(read, {}, no_progress(), workspace);
     learnt = parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml");
   }
-  FuseResult fuse_log(Kept& kept,
+  FuseResult fuse_log(KeptColumns& kept,
                       const FuseOptions& options,
                       const std::string& log = "log.csv") const {
     return fuse(bench.path(log), learnt, kept, options);
   }
   std::string refusal(const FuseOptions& options, const std::string& log = "log.csv") const {
-    Kept kept;
+    KeptColumns kept;
     try {
       fuse_log(kept, options, log);
     } catch (const Error& error) {
@@ -114,7 +83,7 @@ struct FuseBench {
     return "";
   }
   test::SceneBench bench;
-  Kept replayed;
+  KeptColumns replayed;
   ReplayResult result;
   LearntFusion learnt;
 };
@@ -155,14 +124,14 @@ TEST_CASE("fuse: the log that it was learnt from gives the replay's estimates, b
       continue;
     }
     ++applied;
-    Kept kept;
+    KeptColumns kept;
     const FuseResult fused = bench.fuse_log(kept, by(algorithm.label));
     CHECK(fused.instants == 4000);
     CHECK(differences(kept.columns[0], bench.replayed.of(algorithm.label)) == 0);
     // Blocks of any size.
     FuseOptions small = by(algorithm.label);
     small.block = 7;
-    Kept pieces;
+    KeptColumns pieces;
     bench.fuse_log(pieces, small);
     for (std::size_t c = 0; c < kept.columns.size(); ++c)
       CHECK(differences(kept.columns[c], pieces.columns[c]) == 0);
@@ -173,17 +142,17 @@ TEST_CASE("fuse: the log that it was learnt from gives the replay's estimates, b
 TEST_CASE("fuse: rest, several inputs and a tilt as the replay has them") {
   SECTION("offsets at rest are subtracted") {
     const FuseBench bench(kScene + "rest: [0, 5]\n");
-    Kept kept;
+    KeptColumns kept;
     bench.fuse_log(kept, by("median"));
-    CHECK(differences(kept.columns[0], bench.replayed.of("median", false)) == 0);
+    CHECK(differences(kept.columns[0], bench.replayed.of("median")) == 0);
   }
   SECTION("units that the scene says in place of the log") {
     const FuseBench bench(
         "format: scene\nversion: 1\nrecording: {file: log.csv, units: [rad/s]}\n"
         "sensors: [{name: a, scale: 2, unit: m}, b, c]\n");
-    Kept kept;
+    KeptColumns kept;
     const FuseResult fused = bench.fuse_log(kept, by("mean"));
-    CHECK(differences(kept.columns[0], bench.replayed.of("mean", false)) == 0);
+    CHECK(differences(kept.columns[0], bench.replayed.of("mean")) == 0);
     CHECK(fused.sensors[0].unit == "m");
     CHECK(fused.sensors[1].unit == "rad/s");
   }
@@ -194,21 +163,21 @@ TEST_CASE("fuse: rest, several inputs and a tilt as the replay has them") {
                  std::string("detrend: line\n"),
                  std::string("align: {learn: [0, 35]}\nhigh_pass_hz: 0.1\n"));
     const FuseBench bench(kScene + prepared);
-    Kept kept;
+    KeptColumns kept;
     bench.fuse_log(kept, by("mean"));
-    CHECK(differences(kept.columns[0], bench.replayed.of("mean", false)) == 0);
+    CHECK(differences(kept.columns[0], bench.replayed.of("mean")) == 0);
   }
   SECTION("three sensors of two inputs") {
     const FuseBench bench(
         "format: scene\nversion: 1\nrecording: log.csv\nsensors:\n  - {name: a, h: [1, 0]}\n"
         "  - {name: b, h: [1, 1]}\n  - {name: c, h: [0, 1]}\n  - {name: d, h: [0.5, 2]}\n"
         "  - {name: x, h: [2, -1]}\n");
-    Kept kept;
+    KeptColumns kept;
     const FuseResult fused = bench.fuse_log(kept, by("minque"));
     REQUIRE(fused.inputs.size() == 2);
     const std::size_t first = bench.result.learnt.inputs.size();
     CHECK(first == 2);
-    CHECK(differences(kept.columns[0], bench.replayed.of("mean", false)) > 0);
+    CHECK(differences(kept.columns[0], bench.replayed.of("mean input1")) > 0);
     CHECK(kept.head.channels[2].name == "input1 sd");
   }
   SECTION("a tilt in the reference's unit") {
@@ -218,7 +187,7 @@ TEST_CASE("fuse: rest, several inputs and a tilt as the replay has them") {
         "reference: {channels: [x]}\nlearning: [0, 15]\nevaluation: [0, end]\n",
         four_sensors({.head = "t[s],a[deg/s],b[m/s^2],c[m/s^2],d[1],x[deg]"}));
     for (const char* label : {"tilt-kalman", "tilt-complementary-tuned", "tilt-kalman-tuned"}) {
-      Kept kept;
+      KeptColumns kept;
       const FuseResult fused = bench.fuse_log(kept, by(label));
       CHECK(fused.inputs[0].unit == "deg");
       CHECK(differences(kept.columns[0], bench.replayed.of(label)) == 0);
@@ -230,7 +199,7 @@ TEST_CASE("fuse: a new log, its deviations and flags") {
   // Aligned: a gain of 3 % is a fault too.
   const FuseBench bench(kScene + "reference: x\nlearning: [0, 15]\nalign: {learn: [0, 15]}\n");
   bench.bench.put("new.csv", four_sensors({.rows = 6000, .fault = 3, .seed = 11}));
-  Kept kept;
+  KeptColumns kept;
   FuseOptions options = by("minque");
   options.fault_free_s = 20;
   const FuseResult fused = bench.fuse_log(kept, options, "new.csv");
@@ -256,7 +225,7 @@ TEST_CASE("fuse: where another log is healthy nobody knows unless it is said") {
   const FuseBench bench(kScene + "reference: x\nlearning: [0, 15]\nfault_free_s: 10\n");
   bench.bench.put("new.csv", four_sensors({.seed = 12}));
   const auto watched = [&](const FuseOptions& options, const std::string& log) {
-    Kept kept;
+    KeptColumns kept;
     return bench.fuse_log(kept, options, log).warnings.find("faults_not_watched") == nullptr;
   };
   CHECK(watched(by("minque-published"), "log.csv"));
@@ -270,7 +239,7 @@ TEST_CASE("fuse: a sensor that the log does not have") {
   const FuseBench bench(kScene + "reference: x\nlearning: [0, 15]\n");
   bench.bench.put("less.csv",
                   four_sensors({.head = "t[s],a[deg/s],b[deg/s],e[deg/s],d[deg/s],y[deg/s]"}));
-  Kept kept;
+  KeptColumns kept;
   const FuseResult fused = bench.fuse_log(kept, by("least-squares"), "less.csv");
   REQUIRE(fused.warnings.find("sensor_not_in_log") != nullptr);
   CHECK(fused.warnings.find("sensor_not_in_log")->where.rows == std::vector<std::string>{"c"});
@@ -281,7 +250,7 @@ TEST_CASE("fuse: a sensor that the log does not have") {
   // Under another name.
   FuseOptions mapped = by("least-squares");
   mapped.map = {{"c", "e"}};
-  Kept whole, same;
+  KeptColumns whole, same;
   CHECK(bench.fuse_log(whole, mapped, "less.csv").warnings.empty());
   bench.fuse_log(same, by("least-squares"));
   CHECK(differences(whole.columns[0], same.columns[0]) == 0);
@@ -306,7 +275,7 @@ TEST_CASE("fuse: what does not fit is refused in a sentence") {
   CHECK_THAT(bench.refusal(channels), Contains("`map`"));
   bench.bench.put("fast.csv", four_sensors({.rate_hz = 200}));
   CHECK_THAT(bench.refusal(by("kalman-takens-taught"), "fast.csv"), Contains("2 times"));
-  Kept kept;
+  KeptColumns kept;
   const FuseResult fast = bench.fuse_log(kept, by("mean"), "fast.csv");
   CHECK(fast.warnings.find("another_rate") != nullptr);
 }
@@ -315,7 +284,7 @@ TEST_CASE("fuse: at another rate delays keep their seconds") {
   const FuseBench bench(kScene + "reference: x\nalign: {learn: [0, 35]}\nevaluation: [36, end]\n");
   REQUIRE(bench.learnt.sensors[1].alignment.delay_samples == Approx(0.4).margin(0.02));
   bench.bench.put("fast.csv", four_sensors({.rows = 8000, .rate_hz = 200, .noise = 1e-4}));
-  Kept kept;
+  KeptColumns kept;
   bench.fuse_log(kept, by("mean"), "fast.csv");
   const Recording fast = read_recording(bench.bench.path("fast.csv"));
   double largest = 0;
@@ -334,7 +303,7 @@ TEST_CASE("fuse: the file names what is wrong with it, and where") {
     changed.replace(at, from.size(), to);
     try {
       const LearntFusion learnt = parse_fusion_file(changed, "f.yaml");
-      Kept kept;
+      KeptColumns kept;
       fuse(bench.bench.path("log.csv"), learnt, kept, by("least-squares"));
     } catch (const Error& error) {
       return std::string(error.what());
@@ -376,7 +345,7 @@ TEST_CASE("fuse: a sensor that is noisier than where it was learnt is named") {
   const FuseBench bench(kScene + "reference: x\nlearning: [0, 15]\n");
   const auto warned = [&](const LogOptions& o, const char* code) {
     bench.bench.put("new.csv", four_sensors(o));
-    Kept kept;
+    KeptColumns kept;
     const FuseResult fused = bench.fuse_log(kept, by("least-squares"), "new.csv");
     const Warning* warning = fused.warnings.find(code);
     return warning == nullptr ? "" : warning->where.rows[0];
@@ -438,7 +407,7 @@ TEST_CASE("fuse: deviations of simulated sensors hold their errors") {
                             "shrunk-least-squares",
                             "non-negative-least-squares"}) {
     INFO(label);
-    Kept kept;
+    KeptColumns kept;
     bench.fuse_log(kept, by(label), "new.csv");
     double sum = 0, count = 0;
     for (std::size_t k = 4000; k < 20000; ++k) {

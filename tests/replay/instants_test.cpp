@@ -25,20 +25,15 @@ struct Columns {
 Columns all_of(const Instants& instants, std::int64_t from, std::int64_t to, std::size_t size) {
   Columns out;
   out.samples.resize(static_cast<Eigen::Index>(instants.info().units.size()), 0);
-  instants.pass(
-      from,
-      to,
-      size,
-      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-        CHECK(first == from + out.samples.cols());
-        const Eigen::Index old = out.samples.cols();
-        out.samples.conservativeResize(Eigen::NoChange, old + samples.cols());
-        out.samples.rightCols(samples.cols()) = samples;
-        out.truth.conservativeResize(truth.rows(), old + truth.cols());
-        out.truth.rightCols(truth.cols()) = truth;
-        out.sizes.push_back(samples.cols());
-      },
-      no_progress());
+  instants.pass(from, to, size, no_progress(), [&](const InstantBlock& b) {
+    CHECK(b.first == from + out.samples.cols());
+    const Eigen::Index old = out.samples.cols();
+    out.samples.conservativeResize(Eigen::NoChange, old + b.samples.cols());
+    out.samples.rightCols(b.samples.cols()) = b.samples;
+    out.truth.conservativeResize(b.truth.rows(), old + b.truth.cols());
+    out.truth.rightCols(b.truth.cols()) = b.truth;
+    out.sizes.push_back(b.samples.cols());
+  });
   return out;
 }
 

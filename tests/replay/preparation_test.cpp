@@ -153,15 +153,10 @@ Eigen::MatrixXd rows_of(const Instants& instants,
                         std::int64_t to,
                         std::size_t size) {
   Eigen::MatrixXd out(3, to - from);
-  instants.pass(
-      from,
-      to,
-      size,
-      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-        out.block(0, first - from, 2, samples.cols()) = samples;
-        out.block(2, first - from, 1, truth.cols()) = truth;
-      },
-      no_progress());
+  instants.pass(from, to, size, no_progress(), [&](const InstantBlock& b) {
+    out.block(0, b.first - from, 2, b.samples.cols()) = b.samples;
+    out.block(2, b.first - from, 1, b.truth.cols()) = b.truth;
+  });
   return out;
 }
 

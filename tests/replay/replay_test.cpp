@@ -39,15 +39,10 @@ TEST_CASE("replay: the RMSE of the mean is that of a loop over the samples") {
   double squares = 0;
   std::int64_t count = 0;
   const Instants instants(scene, no_progress());
-  instants.pass(
-      0,
-      5000,
-      100,
-      [&](std::int64_t, const Eigen::MatrixXd& y, const Eigen::MatrixXd& x) {
-        for (Eigen::Index k = 0; k < y.cols(); ++k, ++count)
-          squares += std::pow(y.col(k).mean() - x(0, k), 2);
-      },
-      no_progress());
+  instants.pass(0, 5000, 100, no_progress(), [&](const InstantBlock& b) {
+    for (Eigen::Index k = 0; k < b.samples.cols(); ++k, ++count)
+      squares += std::pow(b.samples.col(k).mean() - b.truth(0, k), 2);
+  });
   const ReplayResult result = replay(scene);
   REQUIRE(count == 5000);
   CHECK(named(result, "mean").rmse == Approx(std::sqrt(squares / 5000)).epsilon(1e-12));

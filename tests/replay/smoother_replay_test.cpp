@@ -10,6 +10,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/replay/fuse.hpp"
 #include "libchar/replay/replay.hpp"
+#include "tests/replay/kept_columns.hpp"
 #include "tests/replay/scene_text.hpp"
 #include "tests/support/noise.hpp"
 
@@ -61,28 +62,6 @@ std::string log_of_walks(double fault = 0) {
   return text;
 }
 
-struct Column final : FusedSink, EstimateSink {
-  void begin(const LogInfo&) override {}
-  void begin(const std::vector<std::string>& all,
-             const std::vector<InputResult>&,
-             double,
-             double,
-             std::uint64_t) override {
-    labels = all;
-  }
-  void block(std::span<const std::span<const double>> some) override {
-    values.insert(values.end(), some[0].begin(), some[0].end());
-  }
-  void block(const std::vector<std::vector<double>>& some) override {
-    columns.resize(some.size());
-    for (std::size_t c = 0; c < some.size(); ++c)
-      columns[c].insert(columns[c].end(), some[c].begin(), some[c].end());
-  }
-  std::vector<std::string> labels;
-  std::vector<std::vector<double>> columns;
-  std::vector<double> values;
-};
-
 }  // namespace
 
 TEST_CASE("smoother: with a reference it is scored and explained") {
@@ -119,7 +98,7 @@ TEST_CASE("smoother: without a reference every part looks ahead as well") {
 TEST_CASE("smoother: a log is fused as it was in the replay, a sensor that fails left out") {
   const test::SceneBench bench;
   bench.put("walks.csv", log_of_walks(5));
-  Column replayed;
+  KeptColumns replayed;
   ReplayWorkspace workspace;
   workspace.estimates = &replayed;
   const Scene scene = bench.read("format: scene\nversion: 1\nrecording: walks.csv\n" +
@@ -128,13 +107,13 @@ TEST_CASE("smoother: a log is fused as it was in the replay, a sensor that fails
   const LearntFusion learnt = parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml");
   double squares[3] = {};
   for (std::size_t a = 0; a < 3; ++a) {
-    Column fused;
+    KeptColumns fused;
     FuseOptions options;
-    options.algorithm = replayed.labels[a];
+    options.algorithm = replayed.head.channels[2 + a].name;
     fuse(bench.path("walks.csv"), learnt, fused, options);
-    CHECK(fused.values == replayed.columns[a]);
-    for (std::size_t k = 0; k < fused.values.size(); ++k)
-      squares[a] += std::pow(fused.values[k] - std::sin(0.1 * static_cast<double>(k)), 2);
+    CHECK(fused.columns[0] == replayed.columns[2 + a]);
+    for (std::size_t k = 0; k < fused.columns[0].size(); ++k)
+      squares[a] += std::pow(fused.columns[0][k] - std::sin(0.1 * static_cast<double>(k)), 2);
   }
   CHECK(squares[2] < 0.5 * squares[1]);  // the step of the third sensor is not taken for a drift
 }

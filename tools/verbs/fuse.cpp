@@ -45,7 +45,7 @@ void run_fuse(Session& session, FuseVerb& verb) {
   for (const std::string& input : {verb.log, learnt.file})
     for (const char* suffix : {"", ".json"}) libchar::refuse_same_file(input, verb.output + suffix);
   libchar::check_log_output(verb.output, write_options(verb.writing));
-  libchar::FusedWriter writer(verb.output, write_options(verb.writing));
+  libchar::ColumnWriter writer(verb.output, write_options(verb.writing));
   const libchar::FuseResult result =
       libchar::fuse(verb.log, learnt, writer, verb.options, session.terminal);
   session.terminal.clear();

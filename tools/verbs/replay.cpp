@@ -1,5 +1,7 @@
 // replay SCENE|LOG -o DIR: every algorithm that the data allow, and the report that says which to use.
 
+#include "libchar/replay/replay.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,7 +18,6 @@
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/write.hpp"
-#include "libchar/replay/estimates_writer.hpp"
 #include "libchar/replay/fusion_file.hpp"
 #include "libchar/replay/sweep.hpp"
 #include "libchar/replay/view/algorithm_words.hpp"
@@ -183,8 +184,10 @@ void run_and_report(Session& session,
   check_replay_outputs(verb, inputs, files, tracks);
   ReplayWorkspace workspace;
   workspace.heap = heap_meter();
-  std::optional<EstimatesWriter> estimates;
-  if (!tracks.empty()) workspace.estimates = &estimates.emplace(tracks, verb.force);
+  std::optional<ColumnWriter> estimates;
+  if (!tracks.empty())
+    workspace.estimates =
+        &estimates.emplace(tracks, WriteOptions{.time_column = false, .overwrite = verb.force});
   ReplayResult result = replay(scene, options_of(verb), session.terminal, workspace);
   session.terminal.clear();
   result.command = session.command;

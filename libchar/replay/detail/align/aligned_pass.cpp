@@ -43,7 +43,7 @@ class HeldBack {
     for (; next_ < std::min(until, to_); ++next_) {
       const Eigen::Index at = next_ - base_;
       aligner_.column(samples_, at, aligned_);
-      one_(next_, samples_.col(at), aligned_, truth_.col(at));
+      one_({samples_.col(at), aligned_, truth_.col(at)});
     }
   }
 
@@ -61,17 +61,14 @@ void each_aligned(const Instants& instants,
                   const SceneAlignment& alignment,
                   std::int64_t from,
                   std::int64_t to,
-                  const AlignedInstant& one,
-                  Progress& progress) {
+                  Progress& progress,
+                  const AlignedInstant& one) {
   HeldBack held(alignment, from, to, one);
-  instants.pass_recorded(
-      std::max<std::int64_t>(0, from - fusion::kAlignmentMargin),
-      std::min(instants.info().count, to + fusion::kAlignmentMargin),
-      kAlignedBlock,
-      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-        held.take(first, samples, truth);
-      },
-      progress);
+  instants.pass_recorded(std::max<std::int64_t>(0, from - fusion::kAlignmentMargin),
+                         std::min(instants.info().count, to + fusion::kAlignmentMargin),
+                         kAlignedBlock,
+                         progress,
+                         [&](const InstantBlock& b) { held.take(b.first, b.samples, b.truth); });
   held.finish();
 }
 
@@ -80,8 +77,8 @@ void pass_aligned(const Instants& instants,
                   std::int64_t from,
                   std::int64_t to,
                   std::size_t size,
-                  const InstantsBlock& block,
-                  Progress& progress) {
+                  Progress& progress,
+                  const InstantsBlock& block) {
   const auto width = static_cast<Eigen::Index>(std::max<std::size_t>(size, 1));
   Eigen::MatrixXd samples(alignment.h.size(), width), truths;
   Eigen::Index filled = 0;
@@ -89,27 +86,18 @@ void pass_aligned(const Instants& instants,
   const auto flush = [&] {
     if (filled == 0) return;
     if (filled == width)
-      block(first, samples, truths);
+      block({first, samples, truths});
     else
-      block(first, samples.leftCols(filled), truths.leftCols(filled));
+      block({first, samples.leftCols(filled), truths.leftCols(filled)});
     first += filled;
     filled = 0;
   };
-  each_aligned(
-      instants,
-      alignment,
-      from,
-      to,
-      [&](std::int64_t,
-          const Eigen::VectorXd&,
-          const Eigen::VectorXd& aligned,
-          const Eigen::VectorXd& truth) {
-        if (truths.cols() == 0) truths.resize(truth.size(), width);
-        samples.col(filled) = aligned.cwiseProduct(alignment.h);
-        truths.col(filled) = truth;
-        if (++filled == width) flush();
-      },
-      progress);
+  each_aligned(instants, alignment, from, to, progress, [&](const AlignedSamples& one) {
+    if (truths.cols() == 0) truths.resize(one.truth.size(), width);
+    samples.col(filled) = one.aligned.cwiseProduct(alignment.h);
+    truths.col(filled) = one.truth;
+    if (++filled == width) flush();
+  });
   flush();
 }
 

@@ -13,9 +13,12 @@ namespace libchar {
 
 class Instants;
 
-/// `first` instant of the block, n x m samples, r x m truth (no rows without a reference).
-using InstantsBlock = std::function<void(
-    std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth)>;
+struct InstantBlock {
+  std::int64_t first;              ///< instant
+  const Eigen::MatrixXd& samples;  ///< n x m
+  const Eigen::MatrixXd& truth;    ///< r x m, no rows without a reference
+};
+using InstantsBlock = std::function<void(const InstantBlock& block)>;
 
 /// An alignment of what the sensors would say of the input itself: samples / h.
 struct SceneAlignment {
@@ -27,17 +30,17 @@ struct SceneAlignment {
 
 /// One instant: samples / h as recorded (saturated ones missing) with the further axes below them,
 /// the same aligned, the truth.
-using AlignedInstant = std::function<void(std::int64_t instant,
-                                          const Eigen::VectorXd& recorded,
-                                          const Eigen::VectorXd& aligned,
-                                          const Eigen::VectorXd& truth)>;
+struct AlignedSamples {
+  const Eigen::VectorXd &recorded, &aligned, &truth;
+};
+using AlignedInstant = std::function<void(const AlignedSamples& instant)>;
 
 void each_aligned(const Instants& instants,
                   const SceneAlignment& alignment,
                   std::int64_t from,
                   std::int64_t to,
-                  const AlignedInstant& one,
-                  Progress& progress);
+                  Progress& progress,
+                  const AlignedInstant& one);
 
 /// Instants [from, to) in blocks of `size` columns, as Instants::pass.
 void pass_aligned(const Instants& instants,
@@ -45,7 +48,7 @@ void pass_aligned(const Instants& instants,
                   std::int64_t from,
                   std::int64_t to,
                   std::size_t size,
-                  const InstantsBlock& block,
-                  Progress& progress);
+                  Progress& progress,
+                  const InstantsBlock& block);
 
 }  // namespace libchar

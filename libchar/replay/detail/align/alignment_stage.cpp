@@ -124,13 +124,9 @@ SceneAlignment learn_scene_alignment(const Scene& scene,
   const auto axes = static_cast<Eigen::Index>(instants.source().info().further_axes);
   Gathered gathered(window, out.h.size() * (1 + axes));
   instants.pass_recorded(
-      window.from,
-      window.to,
-      kLearningBlockOfAlignment,
-      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-        gathered.take(first, samples, truth);
-      },
-      progress);
+      window.from, window.to, kLearningBlockOfAlignment, progress, [&](const InstantBlock& b) {
+        gathered.take(b.first, b.samples, b.truth);
+      });
   gathered.finish(out.by_reference);
   gathered.data.channels = out.h.size();
   if (gathered.data.samples.size() > 0)
@@ -181,23 +177,15 @@ AlignmentResult measure_alignment(const Scene& scene,
   fusion::BudgetMeter meter(n, axes, plan.run_to - plan.run_from, out.by_reference);
   Eigen::VectorXd cross;
   each_aligned(
-      instants,
-      alignment,
-      plan.run_from,
-      plan.run_to,
-      [&](std::int64_t,
-          const Eigen::VectorXd& recorded,
-          const Eigen::VectorXd& aligned,
-          const Eigen::VectorXd& truth) {
-        fusion::cross_means(out.learnt, recorded, cross);
-        const Eigen::VectorXd undelayed = fusion::in_time(out.learnt, aligned, cross);
-        meter.push(recorded(used),
+      instants, alignment, plan.run_from, plan.run_to, progress, [&](const AlignedSamples& one) {
+        fusion::cross_means(out.learnt, one.recorded, cross);
+        const Eigen::VectorXd undelayed = fusion::in_time(out.learnt, one.aligned, cross);
+        meter.push(one.recorded(used),
                    undelayed(used),
-                   aligned(used),
+                   one.aligned(used),
                    cross,
-                   truth.size() > 0 ? truth(0) : kNone);
-      },
-      progress);
+                   one.truth.size() > 0 ? one.truth(0) : kNone);
+      });
   out.budget = meter.result();
   return out;
 }

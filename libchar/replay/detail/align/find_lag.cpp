@@ -28,23 +28,18 @@ Pair series(const Scene& scene,
             Progress& progress) {
   Pair out;
   double before = kMissing;
-  instants.pass(
-      from,
-      to,
-      kBlock,
-      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-        for (Eigen::Index k = 0; k < samples.cols(); ++k) {
-          if (scene.tilt) {
-            out.sensor.push_back(samples(static_cast<Eigen::Index>(scene.tilt->gyroscope), k));
-            out.reference.push_back(fusion::wrapped(truth(0, k) - before));
-            before = truth(0, k);
-          } else {
-            out.sensor.push_back(samples.col(k).mean());
-            out.reference.push_back(truth(0, k));
-          }
-        }
-      },
-      progress);
+  instants.pass(from, to, kBlock, progress, [&](const InstantBlock& b) {
+    for (Eigen::Index k = 0; k < b.samples.cols(); ++k) {
+      if (scene.tilt) {
+        out.sensor.push_back(b.samples(static_cast<Eigen::Index>(scene.tilt->gyroscope), k));
+        out.reference.push_back(fusion::wrapped(b.truth(0, k) - before));
+        before = b.truth(0, k);
+      } else {
+        out.sensor.push_back(b.samples.col(k).mean());
+        out.reference.push_back(b.truth(0, k));
+      }
+    }
+  });
   return out;
 }
 

@@ -90,20 +90,15 @@ OffsetEstimate find_reference_offset(const Scene& scene,
                        : Eigen::VectorXd(rows.col(0));
   BatchMeans differences;
   double origin = kMissing;
-  instants.pass(
-      from,
-      to,
-      kOffsetBlock,
-      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-        for (Eigen::Index k = 0; k < samples.cols(); ++k) {
-          double d = truth(0, k) - sensors_say(scene, h, samples, k);
-          if (!std::isfinite(d)) continue;
-          if (std::isnan(origin)) origin = d;
-          d -= origin;
-          differences.push(scene.tilt ? fusion::wrapped(d) : d);
-        }
-      },
-      progress);
+  instants.pass(from, to, kOffsetBlock, progress, [&](const InstantBlock& b) {
+    for (Eigen::Index k = 0; k < b.samples.cols(); ++k) {
+      double d = b.truth(0, k) - sensors_say(scene, h, b.samples, k);
+      if (!std::isfinite(d)) continue;
+      if (std::isnan(origin)) origin = d;
+      d -= origin;
+      differences.push(scene.tilt ? fusion::wrapped(d) : d);
+    }
+  });
   if (differences.count() < 2)
     refuse_offset(scene,
                   "hardly any instant has both reference and sensors",

@@ -188,9 +188,9 @@ class Instants::Columns {
   void flush() {
     if (filled_ == 0) return;
     if (filled_ == samples_.cols()) {
-      out_(from_ + done_, samples_, truth_);
+      out_({from_ + done_, samples_, truth_});
     } else {
-      out_(from_ + done_, samples_.leftCols(filled_), truth_.leftCols(filled_));
+      out_({from_ + done_, samples_.leftCols(filled_), truth_.leftCols(filled_)});
     }
     done_ += filled_;
     filled_ = 0;
@@ -259,16 +259,11 @@ void Instants::prepare(Progress& progress) {
     constexpr std::size_t kTrendBlock = 4096;
     TrendMeter meter;
     Eigen::MatrixXd rows;
-    pass_recorded(
-        0,
-        info_.count,
-        kTrendBlock,
-        [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-          rows.resize(samples.rows() + truth.rows(), samples.cols());
-          rows << samples, truth;
-          meter.push(first, rows);
-        },
-        progress);
+    pass_recorded(0, info_.count, kTrendBlock, progress, [&](const InstantBlock& b) {
+      rows.resize(b.samples.rows() + b.truth.rows(), b.samples.cols());
+      rows << b.samples, b.truth;
+      meter.push(b.first, rows);
+    });
     preparation_.trends = meter.lines(asked.detrend == "line");
   }
   if (!asked.filters()) return;
@@ -356,26 +351,21 @@ std::int64_t Instants::instant_at(double time_s) const {
 void Instants::pass(std::int64_t from,
                     std::int64_t to,
                     std::size_t size,
-                    const InstantsBlock& block,
-                    Progress& progress) const {
+                    Progress& progress,
+                    const InstantsBlock& block) const {
   if (alignment_ != nullptr)
-    return pass_aligned(*this, *alignment_, from, to, size, block, progress);
-  if (rows_ == sensors_) return pass_recorded(from, to, size, block, progress);
-  pass_recorded(
-      from,
-      to,
-      size,
-      [&](std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
-        block(first, samples.topRows(static_cast<Eigen::Index>(sensors_)), truth);
-      },
-      progress);
+    return pass_aligned(*this, *alignment_, from, to, size, progress, block);
+  if (rows_ == sensors_) return pass_recorded(from, to, size, progress, block);
+  pass_recorded(from, to, size, progress, [&](const InstantBlock& b) {
+    block({b.first, b.samples.topRows(static_cast<Eigen::Index>(sensors_)), b.truth});
+  });
 }
 
 void Instants::pass_recorded(std::int64_t from,
                              std::int64_t to,
                              std::size_t size,
-                             const InstantsBlock& block,
-                             Progress& progress) const {
+                             Progress& progress,
+                             const InstantsBlock& block) const {
   Columns columns(*this, from, to, std::max<std::size_t>(size, 1), block);
   const double end_s = info_.start_s + static_cast<double>(to) / info_.rate_hz;
   const auto until = std::min<std::uint64_t>(

@@ -44,14 +44,14 @@ class Instants {
   void pass(std::int64_t from,
             std::int64_t to,
             std::size_t size,
-            const InstantsBlock& block,
-            Progress& progress) const;
+            Progress& progress,
+            const InstantsBlock& block) const;
   /// The same as recorded; below the sensors the rows of their further axes, axis by axis.
   void pass_recorded(std::int64_t from,
                      std::int64_t to,
                      std::size_t size,
-                     const InstantsBlock& block,
-                     Progress& progress) const;
+                     Progress& progress,
+                     const InstantsBlock& block) const;
   /// A sensor's samples are multiplied by it (deg/s to rad/s for a tilt), beside the scene's scale.
   double factor(std::size_t sensor) const { return factors_[sensor]; }
   /// From here on what the filter of the scene began with has died away; 0 without one.

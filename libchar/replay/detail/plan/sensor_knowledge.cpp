@@ -28,13 +28,7 @@ RestMeter at_rest(const Scene& scene, const Instants& instants, Progress& progre
                  "",
                  instants.settled() > 0 ? "the filter has to settle first" : ""});
   instants.pass(
-      from,
-      to,
-      kRestBlock,
-      [&](std::int64_t, const Eigen::MatrixXd& samples, const Eigen::MatrixXd&) {
-        meter.push(samples);
-      },
-      progress);
+      from, to, kRestBlock, progress, [&](const InstantBlock& b) { meter.push(b.samples); });
   return meter;
 }
 
