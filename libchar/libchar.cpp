@@ -33,8 +33,7 @@ NoiseFit fit(std::span<const double> record, double rate_hz, const FitOptions& o
 std::vector<SensorModel> sensor_models(const Characterization& result) {
   std::vector<SensorModel> models;
   for (const ChannelResult& c : result.channels)
-    if (c.fit)
-      models.push_back(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan));
+    if (c.fit) models.push_back(sensor_model_from(c, result.log));
   return models;
 }
 

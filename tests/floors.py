@@ -10,7 +10,7 @@ import sys
 from gates.rooms import is_public
 
 ORDER = {"core": 0, "log": 1, "allan": 1, "spectrum": 1, "fusion": 1, "model": 1, "fit": 2, "simulate": 2, "export": 2,
-         "characterize": 3, "scene": 3, "lot": 4, "replay": 4, "benchmark": 5, "report": 6, "figure": 6, "fleet": 7}
+         "characterize": 3, "scene": 3, "lot": 4, "replay": 4, "benchmark": 5, "figure": 6, "report": 7, "fleet": 8}
 # Floors of one rank do not know each other.
 # Libraries that are kept to their floors.
 KEPT = {"fftw3.h": {"spectrum"}, "ceres/": {"fit", "fusion"}, "CLI/": set(), "cairo": {"figure"},

@@ -58,6 +58,7 @@ verbs = {path.stem for path in (root / "tools/verbs").glob("*.cpp")} | {"sensorc
 faults, used = [], set()
 
 for path in sorted((root / "libchar").rglob("*.[ch]pp")):
+    used |= set(re.findall(r'\{"([a-z_0-9]+)", ', path.read_text()))  # settings of a finding's help
     for line, string in strings(path.read_text()):
         place = f"{path.relative_to(root)}:{line}"
         # Scripts for other programs name those programs' flags.

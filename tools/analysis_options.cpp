@@ -107,6 +107,17 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
                   "with --data frequency: the frequency that counts as zero deviation, Hz "
                   "(default: values are fractional)",
                   0);
+  verb.add_number(
+      "--unwrap",
+      a.options.unwrap,
+      "the values start again after this much, in their unit, as a phase or an angle does "
+      "(default: they do not)",
+      0);
+  verb.add_parsed(
+      "--frozen",
+      "N",
+      [&a](const std::string& text) { a.options.frozen = parse_count(text, 2); },
+      "runs of N equal values and longer are no measurements, but missing (default: they count)");
   verb.add_bytes(
       "--memory",
       a.options.memory_bytes,

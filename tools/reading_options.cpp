@@ -35,7 +35,15 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
       .group("Reading");
   verb.add_rate("--rate",
                 options.rate_hz,
-                "sampling rate (Hz, or 1.5kHz…) of a log without stamps and without a rate")
+                "sampling rate (Hz, 1.5kHz, 1/300…) of a log without stamps and without a rate")
+      .group("Reading");
+  verb.add_parsed(
+          "--interval",
+          "TIME",
+          [&options](const std::string& text) {
+            options.rate_hz = 1 / libchar::parse_duration_s(text);
+          },
+          "the same as the time from sample to sample (s, or 5min…)")
       .group("Reading");
   verb.add_text(
           "--time-column",
@@ -45,7 +53,7 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
       .group("Reading");
   verb.add_choice("--time-unit",
                   options.time_unit,
-                  {"auto", "s", "ms", "us", "ns", "100us"},
+                  {"auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"},
                   "unit of the time column (default: auto)")
       .group("Reading");
 }
@@ -195,10 +203,20 @@ void add_reading_options_without_channel(VerbOptions& verb,
   add_channel_values(verb, options);
   add_time_options(verb, options);
   add_dialect_options(verb, options);
+  verb.add_parsed(
+          "--missing",
+          "VALUE,…",
+          [&options](const std::string& text) {
+            std::istringstream marks(text);
+            for (std::string mark; std::getline(marks, mark, ',');)
+              options.missing.marks.push_back(libchar::parse_number(mark));
+          },
+          "values that mean \"no reading\" in the log, such as -999 (default: none)")
+      .group("Reading");
   add_accepting_flag(verb,
                      "--overflow",
                      "nan",
-                     options.overflow_as_missing,
+                     options.missing.overflow,
                      "nan: a number out of range counts as missing (default: error)");
   add_accepting_flag(verb,
                      "--repeated-header",
@@ -257,7 +275,9 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   word("--header", options.header, usual.header);
   word("--encoding", options.encoding, usual.encoding);
   if (options.skip_rows != 0) flags += fmt::format(" --skip-rows {}", options.skip_rows);
-  if (options.overflow_as_missing) flags += " --overflow nan";
+  for (const double mark : options.missing.marks)
+    flags += fmt::format(" --missing={}", libchar::shortest(mark));
+  if (options.missing.overflow) flags += " --overflow nan";
   if (options.skip_repeated_header) flags += " --repeated-header skip";
   return flags;
 }

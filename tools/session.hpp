@@ -28,7 +28,7 @@ void report_warnings(Session& session, const libchar::LogInfo& info);
 void report_warnings(Session& session, const libchar::Warnings& warnings, const std::string& file);
 
 /// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],
-/// "warnings":[{code,message,count,where}…],"measured":{"work":{…}}}: the head of every --json
+/// "findings":[{file,code,severity,sentence,count,…}],"measured":{"work":{…}}}: the head of every --json
 /// document; the verb adds its own keys behind.
 libchar::Json document_head(const Session& session,
                             const std::string& format,

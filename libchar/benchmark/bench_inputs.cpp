@@ -50,8 +50,7 @@ void add_log(const std::string& path,
   for (const ChannelResult& channel : found.channels) {
     if (!channel.fit) continue;
     BenchSignal signal;
-    signal.model =
-        sensor_model_from(channel.channel, found.log, channel.quality, *channel.fit, channel.allan);
+    signal.model = sensor_model_from(channel, found.log);
     if (terms_in(signal.model) == 0) continue;
     signal.name = channel.channel.name;
     signal.rate_hz = channel.fit->rate_hz;

@@ -82,23 +82,18 @@ BenchSection section_of(const CharacterizationBench& bench) {
                                count_text(bench.signal.samples),
                                brief_text(bench.signal.rate_hz, 4))};
   out.sentences.insert(out.sentences.end(), bench.notes.begin(), bench.notes.end());
-  out.heads = {"Method"};
+  out.table = Table("Method");
   for (const TermAccuracy& term : bench.methods.front().terms)
-    out.heads.push_back(
-        fmt::format("RMSE / bound, {}", kTermNames[static_cast<std::size_t>(term.term)].letter));
-  for (const char* head : {"Coverage of 95 %",
-                           "False terms",
-                           "ns a sample",
-                           "Time over the first",
-                           "B a sample",
-                           "Front"})
-    out.heads.emplace_back(head);
+    out.table.columns.push_back(
+        {fmt::format("RMSE / bound, {}", kTermNames[static_cast<std::size_t>(term.term)].letter)});
+  Table rest("Coverage of 95 %|False terms|ns a sample|Time over the first|B a sample|Front");
+  for (Table::Column& column : rest.columns) out.table.columns.push_back(std::move(column));
   std::vector<const EstimatorAccuracy*> order;
   for (const EstimatorAccuracy& method : bench.methods) order.push_back(&method);
   std::stable_sort(
       order.begin(), order.end(), [](const auto* a, const auto* b) { return a->error < b->error; });
   for (const EstimatorAccuracy* method : order) {
-    std::vector<std::string> row = {method->name};
+    std::vector<Cell> row = {method->name};
     for (std::size_t t = 0; t < method->terms.size(); ++t) row.push_back(term_cell(*method, t));
     row.push_back(coverage_cell(*method));
     row.push_back(method->false_terms.count == 0 ? "–" : percent_text(method->false_terms.value));
@@ -106,7 +101,7 @@ BenchSection section_of(const CharacterizationBench& bench) {
     row.push_back(figure_text(method->time_ratio));
     row.push_back(bytes_cell(method->bytes_per_sample));
     row.push_back(gap_text(method->front_gap));
-    out.rows.push_back(std::move(row));
+    out.table.add(std::move(row));
   }
   out.charts = {chart_of(bench)};
   return out;
@@ -115,9 +110,8 @@ BenchSection section_of(const CharacterizationBench& bench) {
 BenchSection legend_section(const CharacterizationBench& bench) {
   BenchSection out;
   out.title = "The methods";
-  out.heads = {"Method", "What it does"};
-  for (const EstimatorAccuracy& method : bench.methods)
-    out.rows.push_back({method.name, method.what});
+  out.table = Table("Method|What it does");
+  for (const EstimatorAccuracy& method : bench.methods) out.table.add({method.name, method.what});
   out.notes = {
       "Bound: Cramér and Rao's, the least standard deviation that an unbiased method can have on "
       "such "
@@ -140,8 +134,8 @@ std::string scene_cell(const FusionBenchCell& cell) {
   return cell.ran ? figure_text(cell.excess, 3, 100) : "does not run";
 }
 
-std::vector<std::string> row_cells(const FusionBenchRow& row) {
-  std::vector<std::string> out = {row.label + (row.bound ? " (bound)" : "")};
+std::vector<Cell> row_cells(const FusionBenchRow& row) {
+  std::vector<Cell> out = {row.label + (row.bound ? " (bound)" : "")};
   out.push_back(row.excess.count == 0 ? "–" : figure_text(row.excess, 3, 100));
   for (const FusionBenchCell& cell : row.cells) out.push_back(scene_cell(cell));
   out.push_back(figure_text(row.ns_per_sample));
@@ -156,10 +150,10 @@ std::vector<std::string> row_cells(const FusionBenchRow& row) {
 BenchSection over_all(const FusionBench& bench) {
   BenchSection out;
   out.title = "Fusion: over the scenes";
-  out.heads = {"Method", "Excess over all, %"};
+  out.table = Table("Method|Excess over all, %");
   for (std::size_t s = 0; s < bench.scenes.size(); ++s) {
     const FusionBenchScene& scene = bench.scenes[s];
-    out.heads.push_back(fmt::format("scene {}", s + 1));
+    out.table.columns.push_back({fmt::format("scene {}", s + 1)});
     out.sentences.push_back(
         fmt::format("Scene {}: {}; {} sensors, {} true {}, {} instants, {} runs{}; yardstick: {}.",
                     s + 1,
@@ -174,13 +168,14 @@ BenchSection over_all(const FusionBench& bench) {
   }
   for (const FusionBenchLeftOut& scene : bench.left_out)
     out.sentences.push_back(fmt::format("Left out: {}; {}.", scene.name, scene.why));
-  for (const char* head : {"ns an instant", "B at most", "Front"}) out.heads.emplace_back(head);
+  for (const char* head : {"ns an instant", "B at most", "Front"})
+    out.table.columns.push_back({head});
   BenchChart chart{"processor time, ns an instant", "RMSE over the yardstick's", {}};
   for (const FusionBenchRow& row : bench.rows) {
     const bool anywhere = std::any_of(
         row.cells.begin(), row.cells.end(), [](const FusionBenchCell& cell) { return cell.ran; });
     if (!anywhere) continue;
-    out.rows.push_back(row_cells(row));
+    out.table.add(row_cells(row));
     if (row.bound || row.excess.count == 0 || row.ns_per_sample.count == 0) continue;
     chart.points.push_back({row.label,
                             row.ns_per_sample.value,
@@ -207,26 +202,26 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
   BenchSection out;
   out.title = "Growth of cost over " + over;
   const bool sensors = over == "sensors";
-  out.heads = {"Work", "at the least", "at the most", "Memory at the most", "Exponent"};
+  out.table = Table("Work|at the least|at the most|Memory at the most|Exponent");
   if (sensors)
-    out.heads.push_back(fmt::format("Keeps up to, at {} Hz", number_text(bench.rate_hz, 3)));
+    out.table.columns.push_back(
+        {fmt::format("Keeps up to, at {} Hz", number_text(bench.rate_hz, 3))});
   for (const ScalingSeries& series : bench.series) {
     if (series.over != over || series.points.empty()) continue;
     const ScalingPoint &least = series.points.front(), &most = series.points.back();
     const auto cell = [&](const ScalingPoint& p) {
       return fmt::format("{}: {} {}", at_text(over, p.x), figure_text(p.cost), series.unit);
     };
-    std::vector<std::string> row = {
-        series.name,
-        cell(least),
-        cell(most),
-        most.bytes ? bytes_text(static_cast<std::uint64_t>(*most.bytes)) : "–",
-        figure_text(series.exponent, 3)};
+    std::vector<Cell> row = {series.name,
+                             cell(least),
+                             cell(most),
+                             most.bytes ? bytes_text(static_cast<std::uint64_t>(*most.bytes)) : "–",
+                             figure_text(series.exponent, 3)};
     if (sensors)
       row.push_back(!series.keeps_up_to          ? "–"
                     : *series.keeps_up_to >= 1e6 ? "10⁶ and more"
                                                  : number_text(std::floor(*series.keeps_up_to), 3));
-    out.rows.push_back(std::move(row));
+    out.table.add(std::move(row));
   }
   if (over == "samples")
     out.notes = {
@@ -251,14 +246,13 @@ BenchSection sensors_section(const DesignBench& bench) {
         "One of each together, weighted: {}{}.",
         number_text(*bench.one_of_each, 4),
         *bench.one_of_each <= *bench.options.target ? ", which does" : ", which does not do"));
-  out.heads = {"Model", "One has", "Needed", "They have", "Simulated"};
+  out.table = Table("Model|One has|Needed|They have|Simulated");
   for (const SensorsNeeded& row : bench.sensors)
-    out.rows.push_back(
-        {row.model,
-         number_text(row.single, 4),
-         count_text(row.sensors),
-         number_text(row.predicted, 4),
-         row.simulated.count == 0 ? "too long to check" : figure_text(row.simulated)});
+    out.table.add({row.model,
+                   number_text(row.single, 4),
+                   count_text(row.sensors),
+                   number_text(row.predicted, 4),
+                   row.simulated.count == 0 ? "too long to check" : figure_text(row.simulated)});
   out.notes = {
       "For independent sensors: what they share (temperature, supply, a common clock) no number of "
       "them removes."};
@@ -270,14 +264,13 @@ BenchSection records_section(const DesignBench& bench) {
   out.title = "Design: how long a record";
   out.sentences = {fmt::format("Each coefficient to {} of itself (one standard deviation).",
                                percent_text(bench.options.share))};
-  out.heads = {"Model", "Coefficient", "Record", "Samples", "Simulated, %"};
+  out.table = Table("Model|Coefficient|Record|Samples|Simulated, %");
   for (const RecordNeeded& row : bench.records)
-    out.rows.push_back(
-        {row.model,
-         std::string(kTermNames[static_cast<std::size_t>(row.term)].letter),
-         row.seconds ? duration_text(*row.seconds) : "none is long enough",
-         row.seconds ? number_text(row.samples, 3) : "–",
-         row.simulated.count == 0 ? "not checked" : figure_text(row.simulated, 3, 100)});
+    out.table.add({row.model,
+                   std::string(kTermNames[static_cast<std::size_t>(row.term)].letter),
+                   row.seconds ? duration_text(*row.seconds) : "none is long enough",
+                   row.seconds ? number_text(row.samples, 3) : "–",
+                   row.simulated.count == 0 ? "not checked" : figure_text(row.simulated, 3, 100)});
   out.notes = {
       "By the Cramér-Rao bound; simulated: the relative RMSE of the Whittle likelihood on records "
       "of that length."};
@@ -304,7 +297,7 @@ BenchSection stress_section(const StressBench& bench) {
     if (cell.outcome == StressOutcome::wrong)
       out.sentences.push_back(
           fmt::format("Wrong: {}, {}: {}.", cell.subject, cell.input, cell.what));
-  out.heads = {"Of", "Digits", "Stated", "Worst input", "Compared", "Held", "Refused"};
+  out.table = Table("Of|Digits|Stated|Worst input|Compared|Held|Refused");
   std::vector<std::string> seen;
   for (const StressCell& cell : bench.cells) {
     if (std::find(seen.begin(), seen.end(), cell.subject) != seen.end()) continue;
@@ -313,13 +306,13 @@ BenchSection stress_section(const StressBench& bench) {
     for (const StressCell& other : bench.cells)
       if (other.subject == cell.subject) own.cells.push_back(other);
     const auto count = [&](StressOutcome outcome) { return std::to_string(own.count(outcome)); };
-    out.rows.push_back({cell.subject,
-                        digits_text(cell),
-                        std::isnan(cell.stated) ? "–" : number_text(cell.stated, 2),
-                        std::isnan(cell.digits) ? "–" : cell.input,
-                        count(StressOutcome::digits),
-                        count(StressOutcome::held),
-                        count(StressOutcome::refused)});
+    out.table.add({cell.subject,
+                   digits_text(cell),
+                   std::isnan(cell.stated) ? "–" : number_text(cell.stated, 2),
+                   std::isnan(cell.digits) ? "–" : cell.input,
+                   count(StressOutcome::digits),
+                   count(StressOutcome::held),
+                   count(StressOutcome::refused)});
   }
   out.notes = {
       "Compared: estimators with their definitions in long double, weights with a QR decomposition "
@@ -334,10 +327,10 @@ BenchSection worst_stress_section(const StressBench& bench) {
   constexpr std::size_t kMost = 40;
   BenchSection out;
   out.title = "Stress: the cells with the fewest digits beyond the stated ones";
-  out.heads = {"Of", "Input", "Digits", "Stated"};
+  out.table = Table("Of|Input|Digits|Stated");
   for (const StressCell& cell : bench.cells) {
-    if (out.rows.size() == kMost || std::isnan(cell.stated)) break;
-    out.rows.push_back({cell.subject, cell.input, digits_text(cell), number_text(cell.stated, 2)});
+    if (out.table.rows.size() == kMost || std::isnan(cell.stated)) break;
+    out.table.add({cell.subject, cell.input, digits_text(cell), number_text(cell.stated, 2)});
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libchar/benchmark/bench_report.hpp"
+#include "libchar/core/table/table.hpp"
 
 namespace libchar {
 
@@ -26,8 +27,7 @@ struct BenchChart {
 struct BenchSection {
   std::string title;
   std::vector<std::string> sentences;
-  std::vector<std::string> heads;  ///< of the table; empty: none
-  std::vector<std::vector<std::string>> rows;
+  Table table;                     ///< without columns: none
   std::vector<std::string> notes;  ///< below the table
   std::vector<BenchChart> charts;  ///< none or one
 };

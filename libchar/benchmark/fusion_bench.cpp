@@ -165,7 +165,9 @@ void add_fronts(FusionBench& bench) {
                       ? CostAndError{NAN, NAN}
                       : CostAndError{cell.ns_per_sample.value, 1 + cell.excess.value};
     }
-    bench.scenes[s].front_gaps = front_gaps(points);
+    const std::vector<double> of_scene = front_gaps(points);
+    for (std::size_t i = 0; i < of_scene.size(); ++i)
+      bench.rows[i].cells[s].front_gap = of_scene[i];
   }
 }
 

@@ -32,6 +32,7 @@ struct FusionBenchCell {
   Figure ns_per_sample;         ///< of an instant
   double learning_s = 0;        ///< median
   std::optional<double> bytes;  ///< of heap, at most
+  double front_gap = 0;         ///< of 1 + excess in this scene (detail/pareto.hpp)
 };
 
 struct FusionBenchRow {
@@ -53,7 +54,6 @@ struct FusionBenchScene {
   bool simulated = false;
   std::size_t runs = 0;
   bool pooled = false;  ///< one of the most frequent kind: so many true inputs, or a tilt
-  std::vector<double> front_gaps;  ///< one a row
 };
 
 /// A scene that feeds none of the algorithms asked for.

@@ -20,7 +20,7 @@ double thread_seconds();
 /// What the machine is and what it did beside this program.
 struct Machine {
   std::string processor;  ///< as the system names it
-  unsigned cores = 0;
+  std::uint64_t cores = 0;
   double memory_gib = 0;
   std::string system;            ///< kernel and architecture
   double others = 0;             ///< processors that other programs kept busy meanwhile, on average

@@ -13,6 +13,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
+#include "libchar/log/gravity.hpp"
 
 namespace libchar {
 namespace {
@@ -43,6 +44,12 @@ Characterization characterize_source(const Source& source,
     result.temperature = stages.temperature();
     if (stages.end() == next) break;
     next = stages.end();
+  }
+  if (options.wanted.quality && options.data == SampleKind::rate) {
+    std::vector<Channel> channels;
+    for (const ChannelResult& channel : result.channels) channels.push_back(channel.channel);
+    judge_gravity(channels,
+                  [&](std::size_t c) -> ChannelQuality& { return result.channels[c].quality; });
   }
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -62,6 +62,8 @@ struct CharacterizeOptions {
   Wanted wanted;
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
+  double unwrap = 0;  ///< the values start again after this much, in their unit; 0: they do not
+  std::uint64_t frozen = 0;  ///< runs of so many equal values and longer are missing; 0: they count
   /// name of the channel that is the temperature: what it does to the others is taken out before
   /// their noise is fitted
   std::string temperature;
@@ -110,7 +112,8 @@ struct ChannelResult {
   std::optional<NoiseFit> fit;
   std::vector<NoiseType> noise_types;  ///< by averaging time; of phase and frequency
   DigitalFaults digital;               ///< rails, held values, a staircase
-  std::vector<std::string> problems;   ///< why something is absent, in sentences
+  /// Why something is absent, motion, what the converter did. `judge` (judgement.hpp) adds those of quality and fit.
+  std::vector<Finding> findings;
   std::shared_ptr<const ChannelVerification>
       verification;  ///< when it was asked for (verification.hpp)
 };
@@ -129,7 +132,7 @@ struct Characterization {
 
 /// Reads the log once (several times where its channels together are more than `memory_bytes`) and
 /// computes what the report shows. Throws Error(input) about the log, Error(usage) about options
-/// that do not fit it; what the numbers of a channel do not allow is a sentence in its `problems`.
+/// that do not fit it; what the numbers of a channel do not allow is among its `findings`.
 Characterization characterize(const std::string& path,
                               const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());

@@ -175,8 +175,8 @@ ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& 
   out.judgement = judge(channel);
   out.summary = summary_sentence(channel, out.judgement, out.unit);
   out.marks = trace_marks(channel, out.shown_unit);
-  for (const Objection& objection : out.judgement.objections)
-    if (!objection.sentence.empty()) out.cautions.push_back(objection.sentence);
+  for (const Finding& one : out.judgement.findings)
+    if (one.severity != Severity::note) out.cautions.push_back(one.sentence);
   out.allan_minimum = allan_minimum(channel.allan);
   out.draws_allan = stands_on_log_axes(channel.allan);
   out.draws_spectrum = stands_on_log_axes(channel.spectrum);

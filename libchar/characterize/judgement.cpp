@@ -3,7 +3,6 @@
 #include "libchar/characterize/judgement.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -11,15 +10,10 @@
 #include "libchar/characterize/compare/verification.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
-#include "libchar/core/text/text_table.hpp"
+#include "libchar/fit/remedies.hpp"
 
 namespace libchar {
 namespace {
-
-std::string without_stop(std::string sentence) {
-  while (!sentence.empty() && sentence.back() == '.') sentence.pop_back();
-  return sentence;
-}
 
 // "a step", "3 steps": with what a sentence says of several kinds joined.
 std::string counted(std::size_t count, const std::string& name, const char* many = "s") {
@@ -33,13 +27,6 @@ std::string joined(const std::vector<std::string>& parts) {
     out += std::string(i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
   return out;
 }
-
-/// Remedies that say something about the recording; the others (band, shape) say what the sensor's filter is.
-constexpr std::pair<std::string_view, std::string_view> kRemedies[] = {
-    {"spikes", "spikes were left out"},
-    {"lines", "spectral lines were left out"},
-    {"lowest_bins", "the slowest part does not look like noise and was left out"},
-};
 
 std::string letters_with(const NoiseFit& fit, Status status) {
   std::vector<std::string> letters;
@@ -60,8 +47,8 @@ std::string events_taken_out(const NoiseFit& fit) {
   return joined(parts) + (all == 1 ? " was taken out" : " were taken out");
 }
 
-/// A noise of which a hundredth does not fit into the range is not the one that was recorded.
-constexpr double kMostSaturated = 0.01;
+/// So few spikes are repaired without a trace in the coefficients.
+constexpr double kManySpikes = 0.001;
 /// Fewer missing samples cost nothing worth mentioning: terms that touch them are left out.
 constexpr double kMostMissing = 0.01;
 
@@ -69,115 +56,110 @@ double share_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-std::string motion_phrase(const Motion& motion) {
-  std::vector<std::string> parts;
-  if (!motion.moving_s.empty())
-    parts.push_back("moved or shaken in " + counted(motion.moving_s.size(), "stretch", "es"));
-  if (motion.changes.size() == 1)
-    parts.push_back(fmt::format("the noise is {} times as strong from {} s on",
-                                brief_text(motion.changes[0].factor),
-                                place_text(motion.changes[0].at_s)));
-  else if (!motion.changes.empty())
-    parts.push_back(fmt::format("the noise changes its strength {} times", motion.changes.size()));
-  return fmt::format("{}", fmt::join(parts, "; "));
-}
-
 struct Judge {
-  using enum ObjectionKind;
-  using enum Rating;
-
   const ChannelResult& channel;
-  Judgement out;
+  std::vector<Finding> out;
 
-  void add(ObjectionKind kind, Rating rating, std::string phrase, std::string sentence = "") {
-    out.rating = std::max(out.rating, rating);
-    out.objections.push_back({kind, rating, std::move(phrase), std::move(sentence)});
+  void add(std::string_view code, std::string sentence, std::string phrase = "") {
+    out.push_back(finding(code, std::move(sentence), std::move(phrase)));
+  }
+  void add_all(const std::vector<Finding>& found) {
+    out.insert(out.end(), found.begin(), found.end());
   }
 
   void look_at_goodness(const NoiseFit& fit) {
-    const bool explained = fit.goodness.p >= kDoubtful;
-    const std::string sentence = explained ? "" : goodness_sentence(fit.goodness);
-    const std::string p = probability_text(fit.goodness.p);
-    if (!letters_with(fit, Status::misfit).empty())
-      add(misfit, bad, "the noise terms do not describe the recording", sentence);
-    else if (!explained)
-      add(unexplained, bad, "the model does not explain the spectrum (" + p + ")", sentence);
-    if (!fit.converged)
-      add(not_converged, bad, "the fit did not converge", "The fit did not converge.");
+    const bool said = has(fit.findings, "misfit") || has(fit.findings, "digital_misfit");
+    if (const std::string letters = letters_with(fit, Status::misfit); !letters.empty() && !said)
+      add("misfit",
+          "The noise terms do not describe the recording: no coefficient is borne out.",
+          "the noise terms do not describe the recording");
+    else if (fit.goodness.p < kDoubtful && !said)
+      add("unexplained",
+          goodness_sentence(fit.goodness),
+          "the model does not explain the spectrum (" + probability_text(fit.goodness.p) + ")");
+    if (!fit.converged) add("not_converged", "The fit did not converge.");
   }
 
   void look_at_terms(const NoiseFit& fit) {
-    if (const std::string letters = letters_with(fit, Status::undetermined); !letters.empty())
-      add(undetermined,
-          caution,
+    if (const std::string letters = letters_with(fit, Status::undetermined); !letters.empty()) {
+      add("undetermined",
+          fmt::format("Undetermined: {}. Another term could explain the same part of the record, "
+                      "or its Allan curve "
+                      "speaks against it.",
+                      letters),
           letters +
               " undetermined: not told from another term, or contradicted by the Allan curve");
+      if (fit[Term::white].status == Status::undetermined) out.back().severity = Severity::caution;
+    }
     for (std::size_t t = 0; t < kTerms; ++t)
       if (fit.term[t].status == Status::detected && !(fit.term[t].ci95.low > 0))
-        add(reaches_zero,
-            caution,
-            fmt::format("{} is uncertain: its interval includes 0", kTermNames[t].letter));
+        add("reaches_zero",
+            fmt::format("{} is uncertain: its interval includes 0.", kTermNames[t].letter));
+  }
+
+  void look_at_remedies(const NoiseFit& fit) {
+    const std::uint64_t samples = std::max<std::uint64_t>(1, fit.samples);
+    if (const Remedy* spikes = find_remedy(fit, "spikes")) {
+      add("spikes_left_out", fmt::format("Spikes: {}.", spikes->action), "spikes were left out");
+      out.back().count = spikes->count;
+      if (share_of(spikes->count, samples) > kManySpikes) out.back().severity = Severity::caution;
+    }
+    if (const Remedy* lines = find_remedy(fit, "lines")) {
+      add("lines_left_out",
+          fmt::format("Spectral lines: {}.", lines->action),
+          "spectral lines were left out");
+      for (const SpectralLine& line : channel.lines)
+        out.back().where.frequency_hz.push_back(
+            {line.frequency_hz - line.width_hz / 2, line.frequency_hz + line.width_hz / 2});
+    }
+  }
+
+  // Eight steps are one finding with eight places.
+  void look_at_events(const NoiseFit& fit) {
+    if (fit.events.empty()) return;
+    Finding all = finding("event", "", events_taken_out(fit));
+    all.count = fit.events.size();
+    for (const Finding& one : fit.findings) {
+      if (one.code != all.code) continue;
+      all.sentence += (all.sentence.empty() ? "" : " ") + one.sentence;
+      all.where.time_s.insert(
+          all.where.time_s.end(), one.where.time_s.begin(), one.where.time_s.end());
+    }
+    out.push_back(std::move(all));
   }
 
   void look_at_fit(const NoiseFit& fit) {
     look_at_goodness(fit);
     look_at_terms(fit);
-    for (const Remedy& taken : fit.remedies)
-      for (const auto& [kind, phrase] : kRemedies)
-        if (taken.kind == kind) add(remedy, caution, std::string(phrase));
-    if (!fit.events.empty()) add(events, caution, events_taken_out(fit));
+    look_at_remedies(fit);
+    look_at_events(fit);
+    for (const Finding& one : fit.findings)
+      if (one.code != "event") out.push_back(one);
     if (fit.second_opinion && !fit.second_opinion->agrees)
-      add(allan_disagrees,
-          caution,
-          "the fit of the Allan curve disagrees",
-          "The Allan fit disagrees: " + fit.second_opinion->sentence);
-    if (fit.stationarity.noticeable)
-      add(not_stationary, caution, "the noise is not the same throughout the recording");
-    const Motion& moved = channel.motion;
-    if (const std::string phrase = motion_phrase(moved); !phrase.empty())
-      add(motion, caution, phrase, fmt::format("{}", fmt::join(moved.sentences, " ")));
+      add("allan_disagrees",
+          "The Allan fit disagrees: " + fit.second_opinion->sentence,
+          "the fit of the Allan curve disagrees");
   }
 
   void look_at_verification(const ChannelVerification& simulated) {
     if (simulated.agrees) return;
-    add(simulation,
-        simulated.nearly ? caution : bad,
+    add("simulation_disagrees",
+        simulated.sentences.front(),
         simulated.nearly ? "a simulation of the model differs by a few per cent"
-                         : "a simulation of the model does not agree",
-        simulated.sentences.front());
+                         : "a simulation of the model does not agree");
+    if (!simulated.nearly) out.back().severity = Severity::bad;
   }
 
   void look_at_samples(const ChannelQuality& q) {
-    const double cut = share_of(q.saturated, q.samples);
-    const std::string stand = q.saturated == 1 ? "sample stands" : "samples stand";
-    const std::string phrase = (cut > kMostSaturated ? percent_text(cut) + " of the samples stand"
-                                                     : count_text(q.saturated) + " " + stand) +
-                               " at the end of the range";
-    const bool said = !q.suggestions.empty() || !channel.digital.rails.empty();
-    const std::string sentence = said ? "" : phrase + ".";
-    if (cut > kMostSaturated)
-      add(saturated, bad, phrase, sentence);
-    else if (q.saturated > 0 && q.suggestions.empty())
-      add(saturated, caution, phrase, sentence);
-    if (const double share = share_of(q.missing, q.samples + q.missing); share > kMostMissing)
-      add(missing,
-          caution,
-          percent_text(share) + " of the samples are missing",
-          fmt::format("{} samples ({}) are missing.", count_text(q.missing), percent_text(share)));
-  }
-
-  // Sentences that other parts have made; without a fit they say why there is none.
-  void look_at_sentences() {
-    const auto& phrased = channel.motion.sentences;
-    for (const std::string& sentence : channel.problems)
-      if (!channel.fit)
-        add(no_fit, bad, without_stop(sentence), sentence);
-      else if (std::find(phrased.begin(), phrased.end(), sentence) == phrased.end())
-        add(found, caution, as_part(sentence), sentence);
-    if (!channel.fit && channel.problems.empty())
-      add(no_fit, bad, "no noise coefficients were computed");
-    for (const std::string& sentence : channel.quality.suggestions)
-      add(found, caution, as_part(sentence), sentence);
+    const bool cut = has(q.findings, "saturated") || has(q.findings, "much_saturated");
+    if (cut) std::erase_if(out, [](const Finding& one) { return one.code == "rail"; });
+    add_all(q.findings);
+    const double share = share_of(q.missing, q.samples + q.missing);
+    if (!(share > kMostMissing)) return;
+    add("missing_samples",
+        fmt::format("{} samples ({}) are missing.", count_text(q.missing), percent_text(share)),
+        percent_text(share) + " of the samples are missing");
+    out.back().count = q.missing;
   }
 };
 
@@ -193,29 +175,18 @@ Tint tint_of(Rating rating) {
                                      : Tint::bad;
 }
 
-bool Judgement::has(ObjectionKind kind) const {
-  return std::any_of(objections.begin(), objections.end(), [&](const Objection& objection) {
-    return objection.kind == kind;
-  });
-}
-
-std::string as_part(const std::string& whole) {
-  std::string sentence = without_stop(whole);
-  const auto is_in = [&](std::size_t i, char first, char last) {
-    return sentence.size() > i && sentence[i] >= first && sentence[i] <= last;
-  };
-  if (is_in(0, 'A', 'Z') && is_in(1, 'a', 'z'))
-    sentence[0] = static_cast<char>(sentence[0] - 'A' + 'a');
-  return sentence;
-}
-
 Judgement judge(const ChannelResult& channel) {
-  Judge found{channel, {}};
+  Judge found{channel, channel.findings};
   if (channel.fit) found.look_at_fit(*channel.fit);
   if (channel.verification) found.look_at_verification(*channel.verification);
   found.look_at_samples(channel.quality);
-  found.look_at_sentences();
-  return found.out;
+  if (!channel.fit && worst_of(found.out) != Severity::bad)
+    found.add("no_fit", "No noise coefficients were computed.");
+  const Severity worst = worst_of(found.out);
+  const Rating rating = worst == Severity::bad       ? Rating::bad
+                        : worst == Severity::caution ? Rating::caution
+                                                     : Rating::good;
+  return {rating, worst_first(std::move(found.out))};
 }
 
 std::string goodness_sentence(const Goodness& g) {

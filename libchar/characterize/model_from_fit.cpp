@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/judgement.hpp"
+
 namespace libchar {
 namespace {
 
@@ -25,7 +27,8 @@ void set_tau_range(SensorModel& model, const AllanCurve& allan) {
 GaussMarkovNoise process_of(const NoiseFit& fit) {
   if (!fit.gauss_markov || !fit.gauss_markov->in_model) return {};
   const Coefficient &sigma = fit.gauss_markov->sigma, &tau = fit.gauss_markov->tau_s;
-  GaussMarkovNoise out{*sigma.value, *tau.value, {sigma.ci95.low, sigma.ci95.high}, {tau.ci95.low}};
+  GaussMarkovNoise out{
+      *sigma.value, *tau.value, {sigma.ci95.low, sigma.ci95.high}, {tau.ci95.low}, sigma.status};
   if (std::isfinite(tau.ci95.high)) out.tau_ci95_s.push_back(tau.ci95.high);
   return out;
 }
@@ -56,7 +59,6 @@ void set_temperature_terms(SensorModel& model, const TemperatureEffect& effect) 
 
 void set_means(SensorModel& model, const NoiseFit& fit) {
   for (const Event& event : fit.events) model.deterministic.push_back(deterministic_of(event));
-  model.moving_s = fit.moving_s;
   if (fit.temperature && fit.temperature->order > 0) set_temperature_terms(model, *fit.temperature);
 }
 
@@ -82,38 +84,21 @@ SensorModel sensor_model_from_curve(const Channel& channel,
   model.duration_s = fit.duration_s;
   model.stretch_s = source.stretch_s;
   set_means(model, fit);
-  model.remarks = fit.sentences;
+  model.findings = fit.findings;
   return model;
 }
 
-SensorModel sensor_model_from(const Channel& channel,
-                              const LogInfo& log,
-                              const ChannelQuality& quality,
-                              const NoiseFit& fit,
-                              const AllanCurve& allan) {
-  SensorModel model;
-  model.channel = channel.name;
-  model.unit = channel.unit;
-  model.rate_hz = log.time.rate_hz > 0 ? log.time.rate_hz : fit.rate_hz;
-  model.noise = fit.term;
-  model.gauss_markov = process_of(fit);
-  model.flicker_phase = fit.flicker_phase ? fit.flicker_phase->value.value_or(0) : 0;
-  model.noise_shape = fit.shape;
-  model.bandwidth_hz = fit.bandwidth_hz;
-  model.resolution = quality.resolution;
-  set_saturation(model, quality);
-  model.mean = quality.mean;
-  set_tau_range(model, allan);
-  model.obtained = "fit of a recording";
-  model.method = fit.method;
-  model.recording_file = log.file;
-  model.recording_sha256 = log.sha256;
-  model.duration_s = fit.duration_s;
-  model.stretch_s = log.stretch_s;
-  set_means(model, fit);
-  model.remarks = fit.sentences;
+SensorModel sensor_model_from(const ChannelResult& channel, const LogInfo& log) {
+  const NoiseFit& fit = channel.fit.value();
+  SensorModel model = sensor_model_from_curve(channel.channel, fit, "fit of a recording", log);
+  if (log.time.rate_hz > 0) model.rate_hz = log.time.rate_hz;
+  model.resolution = channel.quality.resolution;
+  set_saturation(model, channel.quality);
+  model.mean = channel.quality.mean;
+  set_tau_range(model, channel.allan);
   for (const Remedy& remedy : fit.remedies)
     model.remarks.push_back(remedy.kind + ": " + remedy.action);
+  model.findings = judge(channel).findings;
   return model;
 }
 

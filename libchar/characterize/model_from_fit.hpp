@@ -3,21 +3,14 @@
 
 #include <string>
 
-#include "libchar/allan/allan_deviation.hpp"
-#include "libchar/fit/fit_result.hpp"
-#include "libchar/log/quality.hpp"
-#include "libchar/log/recording.hpp"
+#include "libchar/characterize/characterization.hpp"
 #include "libchar/model/sensor_model.hpp"
 
 namespace libchar {
 
-/// Everything of the fit that a simulation needs, and where it came from. `allan` gives the range
-/// of averaging times that the recording covers; it may be without points.
-SensorModel sensor_model_from(const Channel& channel,
-                              const LogInfo& log,
-                              const ChannelQuality& quality,
-                              const NoiseFit& fit,
-                              const AllanCurve& allan);
+/// Everything of a channel with a fit that a simulation needs, where it came from, and what was found about it. Its
+/// Allan curve gives the range of averaging times that the recording covers; it may be without points.
+SensorModel sensor_model_from(const ChannelResult& channel, const LogInfo& log);
 
 /// The noise part alone, of a fit that knows no recording: `obtained` says of what ("fit of an Allan
 /// curve"). `file` and `sha256` are those of the curve.

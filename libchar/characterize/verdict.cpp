@@ -41,34 +41,34 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
 
 /// Reasons that the headline says in a sentence of their own, with the channels that have one of them.
 struct HeadlineRow {
-  ObjectionKind kind, or_kind;
+  const char *code, *or_code;
   const char* before;
   const char* behind;
 };
 constexpr HeadlineRow kHeadline[] = {
-    {ObjectionKind::misfit,
-     ObjectionKind::unexplained,
+    {"misfit",
+     "unexplained",
      " It does not explain ",
      ": see the residuals there before using the intervals."},
-    {ObjectionKind::allan_disagrees,
-     ObjectionKind::allan_disagrees,
+    {"allan_disagrees",
+     "allan_disagrees",
      " The Allan fit disagrees with the spectral fit on ",
      "."},
-    {ObjectionKind::simulation,
-     ObjectionKind::simulation,
+    {"simulation_disagrees",
+     "simulation_disagrees",
      " A simulation of the model does not agree with ",
      "."},
-    {ObjectionKind::no_fit, ObjectionKind::no_fit, " No fit was possible for ", "."},
-    {ObjectionKind::undetermined, ObjectionKind::misfit, " Coefficients of ", " are doubtful."}};
+    {"no_fit", "no_fit", " No fit was possible for ", "."},
+    {"undetermined", "misfit", " Coefficients of ", " are doubtful."}};
 
-/// The first objection that no sentence of the headline says; null: none.
-const Objection* unsaid(const Judgement& judgement, Rating rating) {
-  for (const Objection& objection : judgement.objections)
-    if (objection.rating == rating &&
+/// The first finding that no sentence of the headline says; null: none.
+const Finding* unsaid(const Judgement& judgement, Severity severity) {
+  for (const Finding& one : judgement.findings)
+    if (one.severity == severity &&
         std::none_of(std::begin(kHeadline), std::end(kHeadline), [&](const HeadlineRow& row) {
-          return row.kind == objection.kind || row.or_kind == objection.kind;
+          return one.code == row.code || one.code == row.or_code;
         }))
-      return &objection;
+      return &one;
   return nullptr;
 }
 
@@ -78,8 +78,7 @@ std::string explained_sentence(const Characterization& result,
   const std::size_t n = judged.size();
   const auto good =
       static_cast<std::size_t>(std::count_if(judged.begin(), judged.end(), [](const Judgement& j) {
-        return !j.has(ObjectionKind::no_fit) && !j.has(ObjectionKind::misfit) &&
-               !j.has(ObjectionKind::unexplained);
+        return !j.has("no_fit") && !j.has("misfit") && !j.has("unexplained");
       }));
   if (good < n)
     return fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);
@@ -91,9 +90,8 @@ std::string explained_sentence(const Characterization& result,
       n == 1 ? "The noise model explains the channel within its scatter"
              : fmt::format("The noise model explains {} within their scatter",
                            n == 2 ? "both channels" : fmt::format("all {} channels", n));
-  const bool agree = std::none_of(judged.begin(), judged.end(), [](const Judgement& j) {
-    return j.has(ObjectionKind::allan_disagrees);
-  });
+  const bool agree = std::none_of(
+      judged.begin(), judged.end(), [](const Judgement& j) { return j.has("allan_disagrees"); });
   if (opinions == 0 || !agree) return out + ".";
   if (opinions == n)
     return out + (n == 1 ? ", and the Allan fit agrees." : ", and the Allan fits agree.");
@@ -109,9 +107,10 @@ std::string unsaid_sentence(const Characterization& result,
   std::string phrase;
   for (std::size_t c = 0; c < judged.size(); ++c) {
     if (judged[c].rating != rating) continue;  // what is not to be used is not used with caution
-    if (const Objection* objection = unsaid(judged[c], rating)) {
+    const Severity severity = rating == Rating::bad ? Severity::bad : Severity::caution;
+    if (const Finding* one = unsaid(judged[c], severity)) {
       names.push_back(result.channels[c].channel.name);
-      phrase = objection->phrase;
+      phrase = one->phrase;
     }
   }
   if (names.empty()) return "";
@@ -164,7 +163,7 @@ std::string verdict_of(const Characterization& result, const std::vector<Judgeme
   for (const HeadlineRow& row : kHeadline) {
     std::vector<std::string> names;
     for (std::size_t c = 0; c < judged.size(); ++c)
-      if (judged[c].has(row.kind) || judged[c].has(row.or_kind))
+      if (judged[c].has(row.code) || judged[c].has(row.or_code))
         names.push_back(result.channels[c].channel.name);
     if (!names.empty()) out += row.before + first_names(names) + row.behind;
   }

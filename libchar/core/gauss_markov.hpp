@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "libchar/core/coefficient.hpp"
+
 namespace libchar {
 
 /// What a simulation needs of it, and what is known of it.
@@ -12,6 +14,8 @@ struct GaussMarkovNoise {
   double tau_s = 0;                ///< correlation time
   std::vector<double> sigma_ci95;  ///< [low, high]; empty: not from a fit
   std::vector<double> tau_ci95_s;  ///< [low, high], [low] when the record gives no upper end
+  Status status =
+      Status::detected;  ///< undetermined: noise terms alone may explain the record as well
   bool operator==(const GaussMarkovNoise&) const = default;
 };
 

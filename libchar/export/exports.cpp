@@ -113,31 +113,43 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
   return out;
 }
 
-// A consumer takes what the file says for known. What is not is refused, or goes with a sentence.
-void answer_misfit(const ExportTarget& target,
-                   const SensorGroup& group,
-                   const ExportOptions& options,
-                   std::vector<std::string>& notes) {
+// Those of the file, and what the statuses say where nobody wrote findings.
+std::vector<Finding> findings_of(const SensorModel& m) {
+  std::vector<Finding> out = m.findings;
+  std::string terms;
+  for (std::size_t t = 0; t < kTerms; ++t)
+    if (m.noise[t].status == Status::misfit)
+      terms += fmt::format("{}{}", terms.empty() ? "" : ", ", kTermNames[t].key);
+  if (!terms.empty() && worst_of(out) != Severity::bad)
+    out.push_back(
+        finding("misfit", terms + ": misfit, the noise terms do not describe the recording"));
+  return out;
+}
+
+// A consumer takes what the file says for known: numbers that are not to be relied on are refused, what asks for a look
+// goes with a sentence.
+void answer_findings(const ExportTarget& target,
+                     const SensorGroup& group,
+                     const ExportOptions& options,
+                     std::vector<std::string>& notes) {
   if (target.takes.status) return;
-  for (const SensorModel* m : group.all) {
-    std::string terms;
-    for (std::size_t t = 0; t < kTerms; ++t)
-      if (m->noise[t].status == Status::misfit)
-        terms += fmt::format("{}{}", terms.empty() ? "" : ", ", kTermNames[t].key);
-    if (terms.empty()) continue;
-    const std::string what =
-        fmt::format("{} of {}: misfit, the noise terms do not describe the recording",
-                    terms,
-                    printable(m->channel, 40));
-    if (!options.anyway)
-      throw Error({ErrorKind::input,
-                   "E0594",
-                   "",
-                   what,
-                   "",
-                   "record again where the sensor is at rest, or export it with `anyway`"});
-    notes.push_back(what);
-  }
+  for (const SensorModel* m : group.all)
+    for (const Finding& one : findings_of(*m)) {
+      if (one.severity == Severity::note) continue;
+      const std::string what =
+          fmt::format("{}: {}", printable(m->channel, 40), printable(one.sentence));
+      if (one.severity == Severity::bad && !options.anyway)
+        throw Error({ErrorKind::input,
+                     "E0594",
+                     "",
+                     what,
+                     "",
+                     one.help.empty()
+                         ? "record again where the sensor is at rest, or export it with `anyway`"
+                         : as_part(one.help[0].sentence) + settings_text(one.help[0]) +
+                               ", or export it with `anyway`"});
+      notes.push_back(what);
+    }
 }
 
 void drop_repeated(std::vector<std::string>& notes) {
@@ -162,18 +174,54 @@ std::string targets_that_take(bool ExportTakes::*option) {
   return names;
 }
 
+namespace {
+
+/// Programs that take the numbers of a target under other keys.
+struct Alike {
+  std::string_view program, target, keys;
+};
+constexpr Alike kAlike[] = {
+    {"lio-sam",
+     "gtsam",
+     "imuAccNoise, imuGyrNoise, imuAccBiasN, imuGyrBiasN are the roots of its covariances"},
+    {"lvi-sam",
+     "gtsam",
+     "acc_n, gyr_n, acc_w, gyr_w of its LIO part are the roots of its covariances"},
+    {"okvis", "kalibr", "sigma_a_c, sigma_g_c, sigma_aw_c, sigma_gw_c are its four densities"},
+    {"msckf",
+     "kalibr",
+     "noise/acc, noise/gyro, noise/acc_bias, noise/gyro_bias are its four densities"},
+    {"maplab", "kalibr", "its sigmas are the same four densities"},
+    {"rovio", "gtsam", "PredictionNoise takes its covariances"},
+    {"fast-lio", "ros", "acc_cov and gyr_cov are variances of a sample"},
+    {"robot_localization", "ros", "it reads the covariances of the messages"},
+    {"isaac", "pegasus", "the same densities and correlation time"},
+    {"ekf2", "px4", "its parameters"},
+    {"ardupilot", "px4", "the parameters of EK3 stand beside those of EKF2"},
+};
+
+std::string alike_hint(std::string_view name) {
+  for (const Alike& one : kAlike)
+    if (one.program == name)
+      return fmt::format("{} takes what {} takes: {}", one.program, one.target, one.keys);
+  return "";
+}
+
+}  // namespace
+
 const ExportTarget& find_export_target(std::string_view name) {
   for (const ExportTarget& target : export_targets())
     if (target.name == name) return target;
   std::vector<std::string> names;
   for (const ExportTarget& target : export_targets()) names.emplace_back(target.name);
   const auto near = nearest(name, names);
+  const std::string hint = alike_hint(name);
   throw Error({ErrorKind::usage,
                "E0592",
                "`target`",
                fmt::format("no such target; targets are {}", fmt::join(names, ", ")),
                std::string(name),
-               did_you_mean(near, "`export_targets` lists them")});
+               hint.empty() ? did_you_mean(near, "`export_targets` lists them") : hint});
 }
 
 Export export_models(const ExportTarget& target,
@@ -183,7 +231,7 @@ Export export_models(const ExportTarget& target,
   SensorGroup group = group_sensors(models, options.axis);
   check_needs(target, group);
   group.unexpressed = unexpressed(target, group);
-  answer_misfit(target, group, options, group.unexpressed);
+  answer_findings(target, group, options, group.unexpressed);
   Export out = target.write(group, options);
   out.notes.insert(out.notes.begin(), group.unexpressed.begin(), group.unexpressed.end());
   if (options.inflate != 1 && target.takes.inflate)

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/crc32.hpp"
 #include "libchar/figure/detail/cairo_pages.hpp"
 #include "libchar/figure/detail/sheet.hpp"
 
@@ -28,6 +31,11 @@ std::string draw_figure(const Chart& figure,
   if (format == FigureFormat::svg) return svg_of(drawing);
   if (format == FigureFormat::pdf) return pdf_of(drawing, warnings);
   return png_of(drawing, options.dpi, warnings);
+}
+
+std::string draw_figure(const Chart& figure, const DrawingOptions& options) {
+  const auto bytes = std::as_bytes(std::span(figure.about));
+  return svg_of(lay_out(figure, options), fmt::format("{:08x}", crc32_of(bytes)));
 }
 
 }  // namespace libchar

@@ -32,6 +32,7 @@ inline constexpr double kOneColumnMm = 85, kTwoColumnsMm = 178;
 struct DrawingOptions {
   double width_mm = kOneColumnMm;
   double height_mm = 0;  ///< 0: what suits the width
+  double shape = 0;      ///< then height of the frame over the width; 0: what suits it
   LegendPlace legend = LegendPlace::automatic;
   bool grey = false;  ///< no colour at all
   double dpi = 300;   ///< of PNG
@@ -48,5 +49,9 @@ std::string draw_figure(const Chart& figure,
                         FigureFormat format,
                         const DrawingOptions& options,
                         Warnings& warnings);
+
+/// As part of a page, on which no other figure says the same of itself: without a size of its own;
+/// where the pointer rests, it says what a curve or a mark is.
+std::string draw_figure(const Chart& figure, const DrawingOptions& options);
 
 }  // namespace libchar

@@ -32,6 +32,7 @@ struct FigureSeries {
   FigureLook look;
   std::vector<bool> hollow;  ///< markers that are drawn so, as many; empty: none
   bool behind = false;       ///< drawn before the others, wherever it stands in the legend
+  std::string tip = {};      ///< where the pointer rests, on a page
 };
 
 /// A point with a word beside it.
@@ -40,6 +41,7 @@ struct FigureMark {
   std::string text;
   FigureLook look;
   bool hollow = false;
+  std::string tip = {};  ///< where the pointer rests, on a page
 };
 
 /// A line from one point to another, such as an interval beside a mark.

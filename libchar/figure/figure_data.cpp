@@ -15,16 +15,12 @@
 namespace libchar {
 namespace {
 
-std::string number_cell(double value) {
-  return std::isfinite(value) ? shortest(value) : "";
-}
-
 std::string csv_row(const char* part,
                     const std::string& name,
                     std::initializer_list<double> numbers,
                     const std::string& text = "") {
   std::string out = fmt::format("{},{}", part, csv_cell(name));
-  for (const double v : numbers) out += "," + number_cell(v);
+  for (const double v : numbers) out += "," + csv_cell(v);
   return out + "," + csv_cell(text) + "\n";
 }
 

@@ -12,9 +12,9 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/figure/detail/sources/curve_sources.hpp"
-#include "libchar/figure/detail/sources/report_values.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/model/model_json.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
 namespace {
@@ -66,8 +66,7 @@ std::string name_for(const std::string& path) {
 void read_document(FigureSource& out, const Document& document, const std::string& file) {
   const std::string format = format_in(document);
   if (format == "replay-report") {
-    check_format(document, file, format, 1);
-    out.replay = std::make_shared<const Document>(document);
+    out.replay = std::make_shared<const ReplayReport>(parse_replay_report(document, file));
     return;
   }
   const bool known = format == "characterization" || format == "allan" || format == "spectrum" ||

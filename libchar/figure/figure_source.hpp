@@ -9,12 +9,13 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/characterize/curves/model_curve.hpp"
-#include "libchar/core/document/document.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
+
+struct ReplayReport;
 
 /// Where a coefficient is read off an Allan curve.
 struct SourceMark {
@@ -67,7 +68,7 @@ struct FigureSource {
   std::vector<SourceCurve> curves;
   std::vector<SourceResiduals> residuals;
   std::vector<SourceTrace> traces;
-  std::shared_ptr<const Document> replay;  ///< the report of a replay; null: it is none
+  std::shared_ptr<const ReplayReport> replay;  ///< the report of a replay; null: it is none
 };
 
 /// Reads report.json of characterize or replay (or the folder that holds it), what `allan`, `psd`

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libchar/core/document/coefficient_fields.hpp"
+#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/curve/power_laws.hpp"
 
@@ -331,7 +332,7 @@ const Fields<NoiseFit>& noise_fit_fields() {
            "stationarity",
            stationarity_fields(),
            {.known = when<[](const T& fit) { return fit.stationarity.tested; }>}),
-       field<&T::sentences>("sentences"),
+       list_of<&T::findings>("findings", finding_fields()),
        field<&T::method>("method"),
        field<&T::converged>("converged"),
        field<&T::iterations>("iterations"),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/noise_shape.hpp"
 #include "libchar/fit/record/power_bins.hpp"
@@ -87,9 +88,8 @@ struct NoiseFit {
   std::vector<FitResidual> residuals;
   std::vector<PowerBin>
       bins;  ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
-  /// a sentence: "the record cannot tell bias instability from random walk…"
-  std::vector<std::string> sentences;
-  std::string method;  ///< "DCT-II Whittle likelihood, 128 bins" …
+  std::vector<Finding> findings;  ///< what the fit found beside the coefficients
+  std::string method;             ///< "DCT-II Whittle likelihood, 128 bins" …
   bool converged = true;
   int iterations = 0;
   double rate_hz = 0;

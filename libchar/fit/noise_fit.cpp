@@ -179,8 +179,8 @@ void answer_low_frequencies(Attempt& now) {
          alarm,
          fmt::format("rate ramp added to the model; 2 ln L rises by {:.0f}", gain),
          1});
-    now.fit.sentences.push_back(
-        "The record drifts; a straight line was taken out of the random walk.");
+    now.fit.findings.push_back(
+        finding("drift", "The record drifts; a straight line was taken out of the random walk."));
     return;
   }
   const auto count = static_cast<std::uint64_t>(
@@ -191,9 +191,11 @@ void answer_low_frequencies(Attempt& now) {
   now.fit.remedies = before;
   now.fit.remedies.push_back(
       {"lowest_bins", alarm, fmt::format("the {} slowest bins left out of the fit", count), count});
-  now.fit.sentences.push_back(
+  now.fit.findings.push_back(finding(
+      "lowest_left_out",
       "The slowest part of the record (warm-up, temperature or drift) does not look like noise and "
-      "was left out of the fit.");
+      "was left out of the fit.",
+      "the slowest part does not look like noise and was left out"));
 }
 
 /// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what
@@ -251,13 +253,16 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
       fit.residuals.begin(), fit.residuals.end(), [](const FitResidual& a, const FitResidual& b) {
         return (a.inside ? std::abs(a.z) : 0) < (b.inside ? std::abs(b.z) : 0);
       });
-  fit.sentences.push_back(fmt::format(
-      "The model does not describe the record within its statistical accuracy "
-      "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {} Hz), in no band: "
-      "the intervals are widened by its scatter, and no coefficient is borne out.",
-      fit.goodness.chi2,
-      fit.goodness.dof,
-      brief_text(worst->frequency_hz)));
+  fit.findings.push_back(finding(
+      "misfit",
+      fmt::format(
+          "The model does not describe the record within its statistical accuracy "
+          "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {} Hz), in no band: "
+          "the intervals are widened by its scatter, and no coefficient is borne out.",
+          fit.goodness.chi2,
+          fit.goodness.dof,
+          brief_text(worst->frequency_hz)),
+      "the noise terms do not describe the recording"));
 }
 
 /// After the decisions: the process that was needed gets its intervals, one that is as likely a

@@ -32,8 +32,13 @@ double kurtosis_of_differences(std::span<const double> record) {
 
 SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count) {
   SpikeAnswer answer;
-  answer.sentence = spike_sentence(count);
-  if (judge_spikes(count) == SpikeVerdict::spikes)
+  const SpikeVerdict verdict = judge_spikes(count);
+  if (const std::string why = spike_sentence(count); !why.empty()) {
+    answer.kept = finding("spikes_kept", why);
+    answer.kept->count = count.left_out;
+    if (verdict == SpikeVerdict::too_many) answer.kept->severity = Severity::caution;
+  }
+  if (verdict == SpikeVerdict::spikes)
     answer.remedy = {
         "spikes",
         fmt::format("kurtosis of differences {} > {}", brief_text(kurtosis), brief_text(alarm)),
@@ -56,7 +61,7 @@ DespikedRecord without_spikes(std::span<const double> record, std::optional<doub
 
 void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit) {
   if (answer.remedy) fit.remedies.insert(fit.remedies.begin(), *answer.remedy);
-  if (!answer.sentence.empty()) fit.sentences.insert(fit.sentences.begin(), answer.sentence);
+  if (answer.kept) fit.findings.insert(fit.findings.begin(), *answer.kept);
 }
 
 Remedy lines_remedy(std::uint64_t clipped) {

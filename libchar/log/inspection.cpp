@@ -9,6 +9,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/log/gravity.hpp"
 #include "libchar/log/recording_json.hpp"
 
 namespace libchar {
@@ -47,11 +48,10 @@ Inspection inspect_rows(const std::string& path, const ReadOptions& options, Pro
   Meters meters(options.threads);
   Inspection inspection;
   inspection.info = read_log(path, options, meters, progress);
-  for (std::size_t c = 0; c < inspection.info.channels.size(); ++c) {
+  for (std::size_t c = 0; c < inspection.info.channels.size(); ++c)
     inspection.quality.push_back(meters.quality(c));
-    quality_warnings(
-        inspection.info.channels[c], inspection.quality.back(), inspection.info.warnings);
-  }
+  judge_gravity(inspection.info.channels,
+                [&](std::size_t c) -> ChannelQuality& { return inspection.quality[c]; });
   return inspection;
 }
 

@@ -1,6 +1,7 @@
 #include "libchar/log/quality.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -80,6 +81,13 @@ struct Extreme {
   bool runs = false;
 
   std::uint64_t saturated() const { return runs && count > 2 * at_next ? count : 0; }
+  /// Stands often, and further from the next value than all others are apart (`others`: their range): no tail of a
+  /// noise gives one value again and again out there, nor does a range that ends.
+  bool is_mark(double others) const {
+    constexpr std::uint64_t kFewest = 3;
+    constexpr double kApart = 3;
+    return count >= kFewest && others > 0 && value - next > kApart * others;
+  }
   void block(const double* x, std::size_t n, double block_extreme) {
     if (sign * block_extreme < next) {  // nothing here reaches it: nearly every block of noise
       run = 0;
@@ -137,6 +145,7 @@ double fold(const Four& lane) {
 struct BlockSums {
   double sum = 0;                         // of x - shift
   double low = 0, high = 0;               // extremes
+  double jump = 0;                        // largest |x - before|
   double s1 = 0, s2 = 0, s3 = 0, s4 = 0;  // sums of powers of x - before
   bool repeats = false;                   // some difference is zero
 };
@@ -147,7 +156,7 @@ LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x,
                                      const double* before,
                                      std::size_t n,
                                      double shift) {
-  Four sum = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {};
+  Four sum = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
   auto repeats = low != low;  // none yet
   const std::size_t whole = n - n % 4;
@@ -157,6 +166,7 @@ LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x,
     low = v < low ? v : low;
     high = v > high ? v : high;
     repeats |= d == 0.0;
+    top = q > top ? q : top;
     a1 += d;
     a2 += q;
     a3 += q * d;
@@ -169,6 +179,7 @@ LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x,
     low[k] = v < low[k] ? v : low[k];
     high[k] = v > high[k] ? v : high[k];
     repeats[k] |= d == 0 ? -1 : 0;
+    top[k] = std::max(top[k], q);
     a1[k] += d;
     a2[k] += q;
     a3[k] += q * d;
@@ -177,6 +188,7 @@ LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x,
   return {fold(sum),
           std::min({low[0], low[1], low[2], low[3]}),
           std::max({high[0], high[1], high[2], high[3]}),
+          std::sqrt(std::max({top[0], top[1], top[2], top[3]})),
           fold(a1),
           fold(a2),
           fold(a3),
@@ -280,6 +292,82 @@ struct DifferenceMoments {
   }
 };
 
+// Jumps of at least kJump of the range so far. A noise has next to none of them in any record of some length; a
+// sawtooth's own jumps are nearly all there is to its differences.
+class WrapWatch {
+ public:
+  static constexpr double kJump = 0.8;
+
+  void block(const double* x, const double* before, std::size_t n, double range) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const double d = x[i] - before[i];
+      if (!(std::fabs(d) >= kJump * range)) continue;
+      ++count_;
+      sum_ += d;
+      size_ += std::fabs(d);
+      least_ = std::min(least_, std::fabs(d));
+    }
+  }
+  void join(const WrapWatch& later) {
+    count_ += later.count_;
+    sum_ += later.sum_;
+    size_ += later.size_;
+    least_ = std::min(least_, later.least_);
+  }
+  void read(const DifferenceMoments& all, double range, ChannelQuality::Signs& signs) const {
+    constexpr std::uint64_t kFewest = 3;
+    constexpr double kMost = 0.9;  // of the sum of squares of the differences
+    const auto count = static_cast<double>(count_);
+    if (count_ < kFewest || !(least_ >= kJump * range) ||
+        !(count * least_ * least_ > kMost * all.s2) || !(all.n > 10 * count))
+      return;
+    const double usual = (all.s1 - sum_) / (all.n - count);
+    // Jumps back over the end count against those over it.
+    const double period = (size_ - usual * sum_ / size_ * count) / count;
+    const double rest = std::max(0.0, all.s2 - size_ * size_ / count) / all.n;
+    signs.wraps = count_;
+    signs.period = with_digits(period, 3 * std::sqrt(rest / count) + 1e-9 * period);
+  }
+  static void layout(auto& at, auto& w) {
+    at(w.count_);
+    at.group("jumps", w.sum_, w.size_, w.least_);
+  }
+
+ private:
+  // The shortest decimal number within `off`.
+  static double with_digits(double value, double off) {
+    for (int digits = 1; digits < 17; ++digits)
+      if (const double short_one = rounded(value, digits); std::fabs(short_one - value) <= off)
+        return short_one;
+    return value;
+  }
+
+  std::uint64_t count_ = 0;
+  double sum_ = 0, size_ = 0, least_ = __builtin_inf();
+};
+
+// The value on which the channel rests, once it stands eight times in a row, and how often it stands from there on.
+struct RestingValue {
+  double value = 0;
+  std::uint64_t count = 0;  // 0: none yet
+
+  void look(double v, std::uint64_t run) {
+    constexpr std::uint64_t kRests = 8;
+    if (count == 0 && run == kRests) {
+      value = v;
+      count = run;
+    } else if (count > 0 && v == value) {
+      ++count;
+    }
+  }
+  void join(const RestingValue& later) {
+    if (count > 0 && later.count > 0 && later.value == value)
+      count += later.count;
+    else if (later.count > count)
+      *this = later;
+  }
+};
+
 // Does the channel count? A clock, an index, a packet number: it moves one way with nearly every
 // sample, by one step, or falls back at once and further than it ever rises (a modulo counter).
 // Noise steps back every second time and is ruled out in the first block.
@@ -313,9 +401,14 @@ class CounterWatch {
     at.group("a counter", c.usual_, up.least, up.largest, down.least, down.largest);
   }
 
+  /// Nearly all steps are one.
+  bool is_even() const {
+    return possible_ && steps_ >= kLeastSteps && usual_ != 0 &&
+           static_cast<double>(same_) >= kMost * steps();
+  }
   std::string sentence() const {
     if (!possible_ || steps_ < kLeastSteps) return "";
-    if (usual_ != 0 && static_cast<double>(same_) >= kMost * steps())
+    if (is_even())
       return fmt::format("{} by {} with {} sample: a counter or a clock, not a measurement",
                          usual_ > 0 ? "rises" : "falls",
                          brief_text(std::fabs(usual_), 4),
@@ -466,13 +559,19 @@ struct Beginning {
   }
 };
 
+struct OddValues {
+  CounterWatch counter;
+  WrapWatch wraps;
+  RestingValue resting;
+};
+
 }  // namespace
 
 struct QualityMeter::State {
   MeanAndSpread values;
   DifferenceMoments differences;
+  OddValues odd;
   DistinctValues distinct;
-  CounterWatch counter;
   Extreme top{1}, bottom{-1};
   std::uint64_t missing = 0, beyond = 0, run = 0, longest_run = 0, repeated = 0;
   double previous = 0, minimum = __builtin_inf(), maximum = -__builtin_inf();
@@ -492,7 +591,11 @@ struct QualityMeter::State {
   void make_room(std::size_t n);
   void hold(const double* x, std::size_t n);
   void process_held();
-  void process(const double* x, const BlockSums& sums, std::size_t n, std::size_t breaks);
+  void process(const double* x,
+               const double* before,
+               const BlockSums& sums,
+               std::size_t n,
+               std::size_t breaks);
   void runs(const double* x, const double* before, std::size_t n, bool repeats);
   bool may_saturate(std::size_t levels) const;
   void join(const State& later);
@@ -507,7 +610,10 @@ void QualityMeter::State::layout(auto& at, auto& s) {
   at.group(kWhat, s.values.origin, s.values.n, s.values.mean, s.values.m2);
   at.group(kWhat, d.n, d.s1, d.s2, d.s3, d.s4);
   DistinctValues::layout(at, s.distinct);
-  CounterWatch::layout(at, s.counter);
+  WrapWatch::layout(at, s.odd.wraps);
+  at(s.odd.resting.value);
+  at(s.odd.resting.count);
+  CounterWatch::layout(at, s.odd.counter);
   Extreme::layout(at, s.top);
   Extreme::layout(at, s.bottom);
   at.group(kWhat, s.missing, s.beyond, s.run, s.longest_run, s.repeated, s.pushed);
@@ -531,8 +637,8 @@ void QualityMeter::State::push(std::span<const double> samples) {
       const BlockSums sums = sums_of(x, x - 1, n, x[0]);
       if (!std::isnan(sums.sum) && sums.low >= -kLargestSample && sums.high <= kLargestSample) {
         runs(x, x - 1, n, sums.repeats);
-        counter.block(x, x - 1, nullptr, n);
-        process(x, sums, n, 0);
+        odd.counter.block(x, x - 1, nullptr, n);
+        process(x, x - 1, sums, n, 0);
         x += n;
         continue;
       }
@@ -594,19 +700,22 @@ void QualityMeter::State::process_held() {
   }
   const BlockSums sums = sums_of(x, before, n, x[0]);
   runs(x, held.data(), n, sums.repeats);
-  counter.block(x, held.data(), starts.data(), n);
-  process(x, sums, n, breaks);
+  odd.counter.block(x, held.data(), starts.data(), n);
+  process(x, before, sums, n, breaks);
   used = 0;
   any_start = false;
 }
 
 void QualityMeter::State::process(const double* x,
+                                  const double* before,
                                   const BlockSums& sums,
                                   std::size_t n,
                                   std::size_t breaks) {
   values.block(x, n, sums.sum);
   minimum = std::min(minimum, sums.low);
   maximum = std::max(maximum, sums.high);
+  if (const double range = maximum - minimum; range > 0 && sums.jump >= WrapWatch::kJump * range)
+    odd.wraps.block(x, before, n, range);
   differences.add(sums);
   differences.n += static_cast<double>(n - breaks);
   top.block(x, n, sums.high);
@@ -633,6 +742,7 @@ void QualityMeter::State::runs(const double* x, const double* before, std::size_
     const bool repeats_last = x[i] - before[i] == 0 && !start;
     repeated += repeats_last ? 1 : 0;
     run = repeats_last ? run + 1 : 1;
+    odd.resting.look(x[i], run);
     longest_run = std::max(longest_run, run);
   }
 }
@@ -648,54 +758,123 @@ void QualityMeter::push(std::span<const double> samples) {
 
 namespace {
 
-void suggest(ChannelQuality& q) {
-  auto& s = q.suggestions;
-  const double share = q.samples > 0 ? 1.0 / static_cast<double>(q.samples) : 0;
-  if (q.beyond > 0)
-    s.push_back(fmt::format("{} beyond {} in magnitude: no measurement, taken as missing",
-                            plural(q.beyond, "sample"),
-                            brief_text(kLargestSample)));
-  if (q.samples == 0) {
-    if (q.beyond > 0) return;
-    s.emplace_back("no value at all: check that the channel is switched on");
-    return;
+void judge_values(const ChannelQuality& q, std::vector<Finding>& out) {
+  if (!q.signs.counter.empty() && q.signs.wraps == 0)
+    out.push_back(finding("counter", q.signs.counter));
+  if (q.signs.wraps > 0) {
+    Finding wraps = finding(
+        "phase_wraps",
+        fmt::format("jumps by its whole range, {}, {} times: a phase or an angle that wraps",
+                    brief_text(q.signs.period, 6),
+                    q.signs.wraps));
+    wraps.count = q.signs.wraps;
+    wraps.help.push_back({"Unwrap it.", {{"unwrap", shortest(q.signs.period)}}});
+    out.push_back(std::move(wraps));
   }
-  if (!q.counter.empty()) s.push_back(q.counter);
-  if (q.samples >= 16 && q.distinct_values == 1)
-    s.emplace_back("constant: nothing to characterize");
-  if (q.samples >= 16 && q.distinct_values > 1 && q.distinct_values <= 3)
-    s.push_back(
+  if (q.samples < 16) return;
+  if (q.distinct_values == 1)
+    out.push_back(finding("constant", "constant: nothing to characterize"));
+  if (q.distinct_values <= 1) return;
+  if (q.distinct_values <= 3)
+    out.push_back(finding(
+        "quantization_limited",
         fmt::format("{} distinct values: quantization-limited, record with more gain or resolution",
-                    q.distinct_values));
-  else if (q.samples >= 16 && q.resolution && q.standard_deviation < 0.5 * *q.resolution &&
-           q.distinct_values > 1)
-    s.push_back(
+                    q.distinct_values)));
+  else if (q.resolution && q.standard_deviation < 0.5 * *q.resolution)
+    out.push_back(finding(
+        "coarse_resolution",
         fmt::format("standard deviation is {} of the resolution: quantization hides the noise, "
                     "record with more gain",
-                    brief_text(q.standard_deviation / *q.resolution, 2)));
-  if (q.saturated > 0 && q.distinct_values > 3)
-    s.push_back(
-        fmt::format("{} samples ({}) stand at the end of the range ({} or {}): "
-                    "saturated, use a larger full scale",
-                    q.saturated,
-                    percent_text(static_cast<double>(q.saturated) * share),
-                    brief_text(q.minimum, 6),
-                    brief_text(q.maximum, 6)));
-  if (q.longest_stuck >= 100 && q.distinct_values > 16)
-    s.push_back(
-        fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck));
+                    brief_text(q.standard_deviation / *q.resolution, 2))));
+  if (q.float32 && q.distinct_values > 16 && q.standard_deviation > 0 &&
+      q.float32_step > 0.5 * q.standard_deviation)
+    out.push_back(
+        finding("float_step",
+                fmt::format("32-bit floats step by {} here, which is {} of the standard deviation: "
+                            "subtract the offset before storing",
+                            brief_text(q.float32_step),
+                            brief_text(q.float32_step / q.standard_deviation, 2))));
+}
+
+/// A noise of which a hundredth does not fit into the range is not the one that was recorded.
+constexpr double kMostSaturated = 0.01;
+
+/// Share of samples at one value inside the range that no rounding of a noise gives.
+constexpr double kDeadBand = 0.3;
+
+void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
+  if (!q.signs.marks.empty()) {  // what else is odd about the ends is these
+    std::vector<std::string> texts;
+    for (const double mark : q.signs.marks) texts.push_back(shortest(mark));
+    const std::uint64_t count = (q.signs.marks.front() == q.minimum ? q.at_minimum : 0) +
+                                (q.signs.marks.back() == q.maximum ? q.at_maximum : 0);
+    Finding marked = finding(
+        "missing_mark",
+        fmt::format("{} stands {} times, far from all other values: a mark for missing values?",
+                    fmt::join(texts, " or "),
+                    count));
+    marked.count = count;
+    marked.help.push_back(
+        {"Say that it means missing.", {{"missing", fmt::format("{}", fmt::join(texts, ","))}}});
+    out.push_back(std::move(marked));
+    return;
+  }
+  if (q.saturated > 0 && q.distinct_values > 3) {
+    const double share = static_cast<double>(q.saturated) / static_cast<double>(q.samples);
+    Finding cut = finding(share > kMostSaturated ? "much_saturated" : "saturated",
+                          fmt::format("{} samples ({}) stand at the end of the range ({} or {}): "
+                                      "saturated, use a larger full scale",
+                                      q.saturated,
+                                      percent_text(share),
+                                      brief_text(q.minimum, 6),
+                                      brief_text(q.maximum, 6)));
+    cut.count = q.saturated;
+    out.push_back(std::move(cut));
+  }
+  const double rests = static_cast<double>(q.signs.at_rest) / static_cast<double>(q.samples);
+  if (rests > kDeadBand && q.distinct_values > 16 && q.minimum < q.signs.resting_value &&
+      q.signs.resting_value < q.maximum) {
+    Finding dead = finding(
+        "dead_band",
+        fmt::format("{} of the samples are exactly {}: a dead band, and noise at rest cannot be "
+                    "measured from this",
+                    percent_text(rests),
+                    brief_text(q.signs.resting_value, 6)));
+    dead.count = q.signs.at_rest;
+    out.push_back(std::move(dead));
+    return;
+  }
+  if (q.longest_stuck < 100 || q.distinct_values <= 16) return;
+  Finding stuck = finding(
+      "stuck",
+      fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck));
+  stuck.help.push_back({"Take what stands still as missing.", {{"frozen", "16"}}});
+  out.push_back(std::move(stuck));
+}
+
+std::vector<Finding> findings_of(const ChannelQuality& q) {
+  std::vector<Finding> out;
+  if (q.beyond > 0) {
+    out.push_back(finding("beyond_range",
+                          fmt::format("{} beyond {} in magnitude: no measurement, taken as missing",
+                                      plural(q.beyond, "sample"),
+                                      brief_text(kLargestSample))));
+    out.back().count = q.beyond;
+  }
+  if (q.samples == 0) {
+    if (q.beyond == 0)
+      out.push_back(finding("no_value", "no value at all: check that the channel is switched on"));
+    return out;
+  }
+  judge_values(q, out);
+  judge_ends(q, out);
   if (q.samples >= 1000 && q.difference_kurtosis > 10)
-    s.push_back(
+    out.push_back(finding(
+        "spiky",
         fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, "
                     "look for outliers",
-                    brief_text(q.difference_kurtosis)));
-  if (q.float32 && q.samples >= 16 && q.distinct_values > 16 && q.standard_deviation > 0 &&
-      q.float32_step > 0.5 * q.standard_deviation)
-    s.push_back(
-        fmt::format("32-bit floats step by {} here, which is {} of the standard deviation: "
-                    "subtract the offset before storing",
-                    brief_text(q.float32_step),
-                    brief_text(q.float32_step / q.standard_deviation, 2)));
+                    brief_text(q.difference_kurtosis))));
+  return out;
 }
 
 }  // namespace
@@ -704,7 +883,7 @@ void suggest(ChannelQuality& q) {
 // most of the time wherever it is (coarse steps, slow changes), of a counter or a clock.
 bool QualityMeter::State::may_saturate(std::size_t levels) const {
   constexpr std::size_t kFewLevels = 8;
-  if (levels <= kFewLevels || !counter.sentence().empty()) return false;
+  if (levels <= kFewLevels || !odd.counter.sentence().empty()) return false;
   const double ends = static_cast<double>(top.count + bottom.count);
   const double others = values.n - ends;
   const double repeats = static_cast<double>(repeated) - ends;
@@ -719,9 +898,15 @@ void QualityMeter::State::join(const State& later) {
   if (values.n == 0) values.origin = later.values.origin;
   join_runs(later, direct);
   values.join(later.values);
-  if (step) differences.add_one(*step);
+  if (step) {
+    differences.add_one(*step);
+    const double range = std::max(maximum, later.maximum) - std::min(minimum, later.minimum);
+    odd.wraps.block(&later.beginning.value, &previous, 1, range);
+  }
+  odd.wraps.join(later.odd.wraps);
+  odd.resting.join(later.odd.resting);
   differences.join(later.differences);
-  counter.join(later.counter, step, later.beginning.value);
+  odd.counter.join(later.odd.counter, step, later.beginning.value);
   for (const double value : later.distinct.values())
     if (!distinct.full()) distinct.add(value);
   missing += later.missing;
@@ -808,6 +993,15 @@ ChannelQuality QualityMeter::finish() const {
   }
   q.distinct_values = state.distinct.values().size();
   q.longest_stuck = state.longest_run;
+  const double others = state.top.next + state.bottom.next;
+  if (q.distinct_values > 3) {
+    if (state.bottom.is_mark(state.top.value + state.bottom.next) || state.bottom.is_mark(others))
+      q.signs.marks.push_back(q.minimum);
+    if (state.top.is_mark(state.top.next + state.bottom.value) || state.top.is_mark(others))
+      q.signs.marks.push_back(q.maximum);
+  }
+  q.signs.resting_value = state.odd.resting.value;
+  q.signs.at_rest = state.odd.resting.count;
   q.at_minimum = state.bottom.count;
   q.at_maximum = state.top.count;
   q.repeats = state.repeated;
@@ -815,7 +1009,7 @@ ChannelQuality QualityMeter::finish() const {
     q.saturated = state.top.saturated() + state.bottom.saturated();
   q.difference_kurtosis = state.differences.kurtosis();
   q.difference_sd = state.differences.standard_deviation();
-  q.counter = state.counter.sentence();
+  q.signs.counter = state.odd.counter.sentence();
   q.float32 = q.samples > 0 && state.float32;
   const auto largest = static_cast<float>(std::max(std::fabs(q.minimum), std::fabs(q.maximum)));
   if (std::isfinite(largest))
@@ -825,15 +1019,10 @@ ChannelQuality QualityMeter::finish() const {
     const bool format_only = q.float32 && *step <= 1.01 * q.float32_step && q.distinct_values > 16;
     if (!format_only) q.resolution = tidy(*step);
   }
-  suggest(q);
+  if (!state.odd.counter.is_even() && q.signs.marks.empty())
+    state.odd.wraps.read(state.differences, q.maximum - q.minimum, q.signs);
+  q.findings = findings_of(q);
   return q;
-}
-
-void quality_warnings(const Channel& channel, const ChannelQuality& quality, Warnings& warnings) {
-  if (quality.samples >= 16 && quality.distinct_values > 1 && quality.distinct_values <= 3)
-    warnings.add("quantization_limited",
-                 "channels with three or fewer distinct values: limited by their resolution",
-                 fmt::format("{} has {}", channel.name, quality.distinct_values));
 }
 
 double known_rate_hz(const LogInfo& info) {

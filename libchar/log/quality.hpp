@@ -14,6 +14,17 @@
 namespace libchar {
 
 struct ChannelQuality {
+  /// What the values look like that are no measurement.
+  struct Signs {
+    /// why the channel is a clock or a counter ("rises by 1 with every sample"); "" when it is none
+    std::string counter;
+    /// jumps by the whole range: a phase or an angle that starts again at the other end
+    std::uint64_t wraps = 0;
+    double period = 0;          ///< of them, with as many digits as the jumps agree in
+    std::vector<double> marks;  ///< extremes that look like marks for missing values
+    double resting_value = 0;   ///< that stood eight times in a row first
+    std::uint64_t at_rest = 0;  ///< samples at it from there on; 0: no value did
+  };
   std::uint64_t samples = 0;  ///< not missing
   std::uint64_t missing = 0;
   std::uint64_t beyond = 0;  ///< of the missing ones: larger than `kLargestSample`, no measurement
@@ -30,13 +41,10 @@ struct ChannelQuality {
   std::uint64_t repeats = 0;       ///< samples that equal the one right before
   double difference_kurtosis = 3;  ///< kurtosis of first differences: 3 Gaussian, above = spikes
   double difference_sd = 0;        ///< standard deviation of first differences
-  /// why the channel is a clock or a counter and no measurement ("rises by 1 with every sample"); ""
-  /// when it is none
-  std::string counter;
-  bool float32 = false;     ///< every value is exactly representable in 32 bits
-  double float32_step = 0;  ///< spacing of 32-bit floats at the largest magnitude
-  std::vector<std::string>
-      suggestions;  ///< in sentences ("2 distinct values: quantization-limited, record with more gain")
+  Signs signs;
+  bool float32 = false;           ///< every value is exactly representable in 32 bits
+  double float32_step = 0;        ///< spacing of 32-bit floats at the largest magnitude
+  std::vector<Finding> findings;  ///< what makes the samples doubtful
 };
 
 /// Streaming, constant memory; the result does not depend on block boundaries.
@@ -59,10 +67,6 @@ class QualityMeter {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// What of a channel's quality makes the recording doubtful for noise analysis, as warnings
-/// (read_recording and inspect).
-void quality_warnings(const Channel& channel, const ChannelQuality& quality, Warnings& warnings);
 
 /// The sampling rate. Throws Error(numeric) where it is not known.
 double known_rate_hz(const LogInfo& info);

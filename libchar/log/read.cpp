@@ -234,11 +234,31 @@ void warn_of_units(const ReadOptions& options, Warnings& warnings) {
                "`channels` chooses others"});
 }
 
+/// How the values of a channel stand among the first samples: one that is slower than the rows of its table
+/// has one in every so many.
+struct Presence {
+  std::uint64_t looked = 0, values = 0, last = 0, usual = 0, same = 0;
+
+  void add(const double* x, std::size_t n) {
+    constexpr std::uint64_t kLook = 65536;
+    for (std::size_t i = 0; i < n && looked < kLook; ++i, ++looked) {
+      if (std::isnan(x[i])) continue;
+      const std::uint64_t distance = looked - last;
+      if (values == 1) usual = distance;
+      same += values > 0 && distance + 1 >= usual && distance <= usual + 1;
+      last = looked;
+      if (++values == kLook / 1024 && usual == 1) looked = kLook;  // as fast as its rows
+    }
+  }
+  bool slow() const { return values > 4 && usual > 1 && 10 * same >= 9 * (values - 1); }
+};
+
 // Passes blocks on and remembers which channels had a value at all.
 struct Watch final : BlockSink {
   Watch(BlockSink& sink, const ReadOptions& reading) : next(sink), options(reading) {}
   void begin(const LogInfo& so_far) override {
     seen.assign(so_far.channels.size(), false);
+    presence.resize(so_far.channels.size());
     LogInfo named = so_far;
     name_channels(named.channels, options);
     factors = scale_channels(named.channels, options, nullptr);
@@ -247,9 +267,11 @@ struct Watch final : BlockSink {
     next.begin(named);
   }
   void block(const SampleBlock& samples) override {
-    for (std::size_t c = 0; c < seen.size(); ++c)
+    for (std::size_t c = 0; c < seen.size(); ++c) {
+      presence[c].add(samples.channels[c], samples.rows);
       for (std::size_t i = 0; i < samples.rows && !seen[c]; ++i)
         seen[c] = !std::isnan(samples.channels[c][i]);
+    }
     if (scales)
       next.block(scaled_block(samples));
     else
@@ -269,6 +291,7 @@ struct Watch final : BlockSink {
   BlockSink& next;
   const ReadOptions& options;
   std::vector<bool> seen;
+  std::vector<Presence> presence;
   std::vector<double> factors;  // of the channels
   bool scales = false;          // one of them is not 1
   std::vector<std::vector<double>> scaled;
@@ -356,11 +379,35 @@ void judge_values(const Watch& watch,
       warnings.add("no_finite_value",
                    "channels without any finite value",
                    "channel " + info.channels[c].name);
+  for (std::size_t c = 0; c < watch.seen.size(); ++c)
+    if (watch.presence[c].slow())
+      warnings.add(
+          "slow_channel",
+          "channels slower than the rows of their table: most of their samples are missing "
+          "here; read alone (`channels` NAME) they have a grid of their own",
+          fmt::format("channel {}, every {} rows", info.channels[c].name, watch.presence[c].usual));
 }
 
 }  // namespace
 
 namespace {
+
+/// The next rows, with what is marked as missing missing.
+bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, Warnings& warnings) {
+  if (!source.next(block, warnings)) return false;
+  for (const double mark : options.missing.marks)
+    for (std::size_t c = 0; c < block.columns.size(); ++c) {
+      const auto end = block.columns[c].begin() + static_cast<std::ptrdiff_t>(block.rows);
+      const auto count = std::count(block.columns[c].begin(), end, mark);
+      if (count == 0) continue;
+      std::replace(block.columns[c].begin(), end, mark, kMissing);
+      warnings.add("missing_value",
+                   "values that mean \"no reading\", as was said: missing",
+                   source.info().channels[c].name,
+                   static_cast<std::uint64_t>(count));
+    }
+  return true;
+}
 
 /// The head with the names and units that the channels have in the end.
 LogInfo named_info(const RowSource& source, const ReadOptions& options) {
@@ -412,7 +459,7 @@ LogInfo read_rows(const std::string& path,
   Watch watch(sink, whole);
   TimeGrid grid(*source, whole, watch, warnings);
   RowBlock block;
-  while (source->next(block, warnings)) grid.push(block);
+  while (next_rows(*source, options, block, warnings)) grid.push(block);
   LogInfo known;
   grid.finish(known);
   source->finish(warnings);
@@ -439,7 +486,7 @@ LogInfo read_log(const std::string& log,
   RowBlock block;
   const std::string what = "reading " + path;
   bool more = true;
-  while (more && source->next(block, warnings)) {
+  while (more && next_rows(*source, options, block, warnings)) {
     more = grid.push(block);
     const std::uint64_t total = source->bytes_total();
     progress.update(
@@ -487,9 +534,12 @@ Recording read_recording(const std::string& path, const ReadOptions& options, Pr
   Recording recording;
   recording.info = read_log(path, options, collector, progress);
   recording.samples = std::move(collector.samples);
-  for (std::size_t c = 0; c < recording.info.channels.size(); ++c)
-    quality_warnings(
-        recording.info.channels[c], collector.meters[c].finish(), recording.info.warnings);
+  for (std::size_t c = 0; c < recording.info.channels.size(); ++c) {
+    const ChannelQuality quality = collector.meters[c].finish();
+    for (const Finding& one : quality.findings)
+      if (one.code == "quantization_limited")
+        recording.info.warnings.add(one.code, one.sentence, recording.info.channels[c].name);
+  }
   return recording;
 }
 
@@ -501,7 +551,7 @@ StampedRows read_stamped_rows(const std::string& log,
   StampedRows out;
   Warnings warnings;
   RowBlock block;
-  while (source->next(block, warnings)) {
+  while (next_rows(*source, options, block, warnings)) {
     const auto rows = static_cast<std::ptrdiff_t>(block.rows);
     out.samples.resize(block.columns.size());
     for (std::size_t c = 0; c < block.columns.size(); ++c)

@@ -14,6 +14,13 @@
 namespace libchar {
 
 struct ReadOptions {
+  /// What is no measurement, though it is a number.
+  struct Missing {
+    std::vector<double> marks;  ///< values that stand for "no reading" in the log: -999, 65535
+    bool overflow =
+        false;  ///< so does a number out of a double's range, instead of ending the reading
+  };
+
   std::vector<std::string>
       channels;  ///< names (or c0, c1…) to read; empty = all. Unknown name: Error(usage) naming the nearest
   std::string
@@ -39,7 +46,7 @@ struct ReadOptions {
       rate_hz;  ///< sampling rate; needed when the log has neither stamps nor a rate; wins over stamps' absence only
   std::string time_column =
       "auto";  ///< "auto", "none", a name, or c0-style position among all columns
-  std::string time_unit = "auto";  ///< "auto", "s", "ms", "us", "ns", "100us"
+  std::string time_unit = "auto";  ///< "auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"
   std::string format = "auto";     ///< "auto" or a name of the table of formats
   std::string preset;  ///< which instrument wrote a .imu file, which does not say: "IMAR", "LN200"…
   std::string delimiter = "auto";  ///< "auto", ",", ";", "tab", "space", or one character
@@ -47,8 +54,7 @@ struct ReadOptions {
   std::string header = "auto";     ///< "auto", "yes", "no"
   std::string encoding = "auto";   ///< "auto", "utf-8", "latin1", "cp1252" (CSV header only)
   std::uint64_t skip_rows = 0;     ///< lines to skip before the header (CSV)
-  bool overflow_as_missing =
-      false;  ///< a number out of double's range counts as missing instead of ending the reading
+  Missing missing;
   bool skip_repeated_header =
       false;  ///< header lines inside the data (concatenated logs) are counted and skipped
   std::size_t block_bytes =

@@ -10,7 +10,8 @@ constexpr Word kHeaders[] = {{"auto"}, {"yes"}, {"no"}};
 constexpr Word kEncodings[] = {{"auto"}, {"utf-8"}, {"latin1"}, {"cp1252"}};
 constexpr Word kTimeSources[] = {{"auto"}, {"header"}, {"log"}, {"publish"}};
 constexpr Word kDateOrders[] = {{"auto"}, {"day"}, {"month"}};
-constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}, {"100us"}};
+constexpr Word kTimeUnits[] = {
+    {"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}, {"100us"}, {"min"}, {"h"}, {"d"}};
 
 // auto and the names of the table of formats.
 const std::vector<Word>& format_choices() {
@@ -98,7 +99,10 @@ Fields<ReadOptions> time_fields() {
                                  .range = kPositive,
                                  .meaning = "first instant not used",
                                  .otherwise = "the end"}),
-      field<&ReadOptions::overflow_as_missing>(
+      field<&ReadOptions::missing, &ReadOptions::Missing::marks>(
+          "missing",
+          {.meaning = "values that mean \"no reading\", such as -999", .otherwise = "none"}),
+      field<&ReadOptions::missing, &ReadOptions::Missing::overflow>(
           "overflow_as_missing",
           {.meaning = "a number out of a double's range counts as missing", .otherwise = "false"}),
       field<&ReadOptions::skip_repeated_header>(

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/log/binary/sidecar.hpp"
@@ -11,30 +12,10 @@
 namespace libchar {
 namespace {
 
-template <class T>
-void pass_over(const MapReader&, std::string_view, T&) {}
-
 // ---- the head of a document ----
 
-struct InputFile {
-  std::string path, sha256;
-  std::uint64_t bytes = 0;
-};
-
-struct FileWarning {
-  std::string file;
-  Warning warning;
-};
-
-struct DocumentHead {
-  std::string format;
-  std::vector<std::string> command;
-  std::vector<InputFile> input;
-  std::vector<FileWarning> warnings;
-};
-
-const Fields<InputFile>& input_fields() {
-  using T = InputFile;
+const Fields<DocumentHead::File>& input_fields() {
+  using T = DocumentHead::File;
   static const Fields<T> rows = always(Fields<T>{
       field<&T::path>("path"),
       field<&T::sha256>("sha256", {.known = when<[](const T& f) { return !f.sha256.empty(); }>}),
@@ -43,24 +24,19 @@ const Fields<InputFile>& input_fields() {
   return rows;
 }
 
-const Fields<FileWarning>& warning_fields() {
-  using T = FileWarning;
-  static const Fields<T> rows =
-      joined(Fields<T>{field<&T::file>("file")},
-             always(Fields<T>{
-                 field<&T::warning, &Warning::code>("code"),
-                 field<&T::warning, &Warning::message>("message"),
-                 field<&T::warning, &Warning::count>("count"),
-                 field<&T::warning, &Warning::places>("where", {.meaning = "the first three"}),
-             }));
+const Fields<DocumentHead::Found>& file_finding_fields() {
+  using T = DocumentHead::Found;
+  static const Fields<T> rows = {field<&T::file>("file"), beside<&T::finding>(finding_fields())};
   return rows;
 }
 
-const Fields<DocumentHead>& head_fields() {
+}  // namespace
+
+const Fields<DocumentHead>& document_head_fields() {
   using T = DocumentHead;
   static const Fields<T> tool = always(Fields<T>{
       computed<[](const T&) { return std::string("sensorchar"); }>("name"),
-      computed<[](const T&) { return version(); }>("version"),
+      field<&T::program>("version"),
       computed<[](const T&) { return build(); }>("build"),
   });
   static const Fields<T> rows = always(Fields<T>{
@@ -69,10 +45,12 @@ const Fields<DocumentHead>& head_fields() {
       level<T>("tool", tool, {.meaning = "the program that wrote the document"}),
       field<&T::command>("command", {.meaning = "its words"}),
       list_of<&T::input>("input", input_fields(), {.meaning = "each file read"}),
-      list_of<&T::warnings>("warnings", warning_fields()),
+      list_of<&T::findings>("findings", file_finding_fields()),
   });
   return rows;
 }
+
+namespace {
 
 // ---- a recording ----
 
@@ -141,7 +119,7 @@ const Fields<DescribedChannel>& described_channel_fields() {
       field<&T::quality, &Q::difference_kurtosis>("difference_kurtosis", {.known = kVaries}),
       field<&T::quality, &Q::float32>("float32"),
       field<&T::quality, &Q::float32_step>("float32_step"),
-      field<&T::quality, &Q::suggestions>("suggestions"),
+      list_of<&T::quality, &Q::findings>("findings", finding_fields()),
   });
   return rows;
 }
@@ -174,7 +152,7 @@ const Fields<DescribedRecording>& recording_fields() {
       field<&T::info, &L::time, &B::unit_guessed>("time_unit_guessed"),
       field<&T::info, &L::time, &B::from_stamps>("rate_from_stamps"),
       field<&T::info, &L::time, &B::start_ns>("start_ns", {.meaning = "stamp of the first sample"}),
-      custom<T, pass_over<T>, write_repairs>("repairs", "counts", {.meaning = "counts by kind"}),
+      written<T, write_repairs>("repairs", "counts", {.meaning = "counts by kind"}),
       field<&T::info, &L::guesses>("guesses"),
       field<&T::info, &L::dialect>("dialect"),
       field<&T::info, &L::topic>(
@@ -193,24 +171,15 @@ const Fields<DescribedRecording>& recording_fields() {
 
 Json document_head(std::string_view format,
                    const std::vector<std::string>& command,
-                   const std::vector<const LogInfo*>& logs) {
-  DocumentHead head{std::string(format), command, {}, {}};
+                   const std::vector<const LogInfo*>& logs,
+                   const Warnings& of_result) {
+  DocumentHead head{std::string(format), std::string(version()), command, {}, {}};
   for (const LogInfo* log : logs) {
     head.input.push_back({log->file, log->sha256, log->bytes});
-    for (const Warning& w : log->warnings.list()) head.warnings.push_back({log->file, w});
+    for (const Warning& w : log->warnings.list()) head.findings.push_back({log->file, w});
   }
-  return document_of(head_fields(), head);
-}
-
-Json warnings_json(const Warnings& warnings) {
-  Json out = Json::array();
-  for (const Warning& w : warnings.list())
-    out.push_back(document_of(warning_fields(), FileWarning{"", w}));
-  return out;
-}
-
-std::span<const Field> document_head_rows() {
-  return head_fields().rows;
+  for (const Warning& w : of_result.list()) head.findings.push_back({"", w});
+  return document_of(document_head_fields(), head);
 }
 
 std::span<const Field> recording_rows() {

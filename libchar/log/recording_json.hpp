@@ -13,18 +13,34 @@
 
 namespace libchar {
 
+/// What every document that is made from logs says first.
+struct DocumentHead {
+  std::string format;
+  std::string program;  ///< version of the program that wrote it
+  std::vector<std::string> command;
+  struct File {
+    std::string path, sha256;  ///< `sha256` empty: not known
+    std::uint64_t bytes = 0;
+  };
+  std::vector<File> input;
+  struct Found {
+    std::string file;
+    Finding finding;
+  };
+  std::vector<Found> findings;
+};
+const Fields<DocumentHead>& document_head_fields();
+
 /// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],
-/// "warnings":[{file,code,message,count,where}…]}: the head of every document that is made from logs.
+/// "findings":[{file,code,severity,sentence,count,…}]}: the head of every document that is made from logs.
 Json document_head(std::string_view format,
                    const std::vector<std::string>& command,
-                   const std::vector<const LogInfo*>& logs);
+                   const std::vector<const LogInfo*>& logs,
+                   const Warnings& of_result = {});
 
 /// What `input` says of a small file that was read whole, a model or a report: its path, digest and size. Throws
 /// Error(input) where it cannot be read.
 LogInfo document_info(const std::string& path);
-
-/// [{code, message, count, where}…]
-Json warnings_json(const Warnings& warnings);
 
 struct DescribedChannel {
   Channel channel;
@@ -36,8 +52,7 @@ const Fields<DescribedChannel>& described_channel_fields();
 /// File, channels, time base and repairs; `qualities` has one element a channel of `log`.
 Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
 
-/// What schemas say of a head, of a recording, and of what stands beside a raw binary log.
-std::span<const Field> document_head_rows();
+/// What schemas say of a recording, and of what stands beside a raw binary log.
 std::span<const Field> recording_rows();
 std::span<const Field> sidecar_rows();
 

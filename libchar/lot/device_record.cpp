@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libchar/characterize/compare/runs.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/limits.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/log_files.hpp"
@@ -77,7 +78,7 @@ RecordedChannel channel_record(const ChannelResult& channel, SampleKind data) {
   out.samples = channel.quality.samples;
   out.missing = channel.quality.missing;
   if (std::isfinite(channel.quality.mean)) out.mean = channel.quality.mean;
-  out.problems = channel.problems;
+  out.findings = judge(channel).findings;
   if (!channel.fit) return out;
   const NoiseFit& fit = *channel.fit;
   out.fitted = true;
@@ -134,7 +135,7 @@ bool RecordedValue::operator==(const RecordedValue& o) const {
 bool RecordedChannel::operator==(const RecordedChannel& o) const {
   return name == o.name && unit == o.unit && rate_hz == o.rate_hz && duration_s == o.duration_s &&
          samples == o.samples && missing == o.missing && same_number(mean, o.mean) &&
-         fitted == o.fitted && same_number(p, o.p) && values == o.values && problems == o.problems;
+         fitted == o.fitted && same_number(p, o.p) && values == o.values && findings == o.findings;
 }
 
 const RecordedValue* RecordedChannel::find(DeviceQuantity quantity) const {
@@ -189,9 +190,9 @@ std::string why_nothing_fitted(const DeviceRecord& record) {
   for (const RecordedChannel& channel : record.channels)
     if (channel.fitted) return "";
   Problem problem{ErrorKind::numeric, "E0711", record.log, "no channel could be fitted"};
-  if (!record.channels.empty() && !record.channels[0].problems.empty())
+  if (!record.channels.empty() && !record.channels[0].findings.empty())
     problem.what +=
-        fmt::format("; {}: {}", record.channels[0].name, record.channels[0].problems[0]);
+        fmt::format("; {}: {}", record.channels[0].name, record.channels[0].findings[0].sentence);
   return one_line(problem);
 }
 

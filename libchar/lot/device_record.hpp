@@ -43,7 +43,7 @@ struct RecordedChannel {
   double p = kNone;  ///< goodness of fit
   std::vector<RecordedValue>
       values;  ///< in the order of the enum, none twice; a term that was not fitted has none
-  std::vector<std::string> problems;  ///< why something is absent, in sentences
+  std::vector<Finding> findings;  ///< the worst first
   const RecordedValue* find(DeviceQuantity quantity) const;
   bool operator==(const RecordedChannel&) const;
 };

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/lot/detail/record_scanner.hpp"
 #include "libchar/lot/device_record.hpp"
@@ -124,7 +125,7 @@ const Fields<RecordedChannel>& channel_fields() {
             "p",
             {.meaning = "goodness of fit", .written = Written::if_known, .known = when<is_fitted>}),
         std::move(values),
-        field<&T::problems>("problems"),
+        list_of<&T::findings>("findings", finding_fields()),
     };
   }();
   return rows;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/model/detail/noise_term.hpp"
 
@@ -138,6 +139,7 @@ const Fields<GaussMarkovNoise>& gauss_markov_fields() {
           "tau_ci95_s",
           {.unit = "s",
            .meaning = "95 % interval of tau_s; the lower end alone: no upper end known"}),
+      field<&GaussMarkovNoise::status>("status", {.otherwise = "detected"}),
   };
   return rows;
 }
@@ -243,30 +245,6 @@ void write_deterministic(const Field& row, const SensorModel& model, std::vector
     terms.push_back(part_entry("", std::move(keys), Entry::Form::flow));
   }
   out.push_back(part_entry(std::string(row.key), std::move(terms), Entry::Form::list));
-  out.back().comment = row.text.comment;
-}
-
-void read_moving(const MapReader& at, std::string_view key, SensorModel& model) {
-  if (!at.has(key)) return;
-  std::size_t i = 0;
-  for (const Document& element : at.list(key)) {
-    const MapReader one(
-        element, at.file(), fmt::format("{}[{}]", at.path_of(key), i++), {"from_s", "to_s"});
-    const Interval stretch{one.number("from_s"), one.number("to_s")};
-    if (!(stretch.low < stretch.high)) one.refuse("to_s", "must be after from_s");
-    model.moving_s.push_back(stretch);
-  }
-}
-
-void write_moving(const Field& row, const SensorModel& model, std::vector<Entry>& out) {
-  if (model.moving_s.empty()) return;
-  std::vector<Entry> stretches;
-  for (const Interval& stretch : model.moving_s)
-    stretches.push_back(part_entry(
-        "",
-        {{"from_s", finite_or_null(stretch.low)}, {"to_s", finite_or_null(stretch.high)}},
-        Entry::Form::flow));
-  out.push_back(part_entry(std::string(row.key), std::move(stretches), Entry::Form::list));
   out.back().comment = row.text.comment;
 }
 
@@ -491,13 +469,14 @@ const Fields<SensorModel>& origin_fields() {
           "[low, high]",
           {.comment = "averaging times, in seconds, that the recording covers reliably"}),
       deterministic_row(),
-      custom<SensorModel, read_moving, write_moving>(
-          "moving",
-          "list of {from_s, to_s}",
-          {.meaning = "stretches of the recording in motion or handled, in seconds",
-           .otherwise = "none"}),
       custom<SensorModel, read_remarks, write_remarks>(
-          "remarks", "list of texts", {.meaning = "conversions, findings of the fit"}),
+          "remarks",
+          "list of texts",
+          {.meaning = "conversions on reading, what was done before the fit"}),
+      list_of<&SensorModel::findings>(
+          "findings",
+          finding_fields(),
+          {.meaning = "about the recording and the numbers, the worst first"}),
   };
   return rows;
 }

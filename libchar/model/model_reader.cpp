@@ -36,7 +36,8 @@ void check_shape(const SensorModel& model, const MapReader& at) {
 }
 
 void check_process(const GaussMarkovNoise& process, const MapReader& at) {
-  const MapReader part = at.map("gauss_markov", {"sigma", "tau_s", "sigma_ci95", "tau_ci95_s"});
+  const MapReader part =
+      at.map("gauss_markov", {"sigma", "tau_s", "sigma_ci95", "tau_ci95_s", "status"});
   if (process.sigma > 0 && !(process.tau_s > 0))
     part.refuse("sigma", "a Gauss-Markov process needs `tau_s`, its correlation time, above 0");
   if (!process.sigma_ci95.empty() && process.sigma_ci95.size() != 2)

@@ -14,6 +14,7 @@
 
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/document/enum_table.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/gauss_markov.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/interval.hpp"
@@ -119,7 +120,6 @@ struct SensorModel {
       resolution;  ///< quantization step of the output (LSB), in the output's unit
 
   std::vector<DeterministicTerm> deterministic;  ///< of the recording
-  std::vector<Interval> moving_s;  ///< stretches of the recording in motion or handled
 
   double mean = 0;  ///< of the recording, removed before analysis: contains the true input at rest
   double tau_min_s = 0,
@@ -130,7 +130,8 @@ struct SensorModel {
   double duration_s = 0;
   std::optional<Interval>
       stretch_s;  ///< of the recording that was used, where that is not all of it
-  std::vector<std::string> remarks;  ///< conversions on reading, findings of the fit
+  std::vector<std::string> remarks;  ///< conversions on reading, what a pooled model is of
+  std::vector<Finding> findings;     ///< about the recording and the numbers, the worst first
 
   const Coefficient& operator[](Term t) const { return noise[static_cast<std::size_t>(t)]; }
 };

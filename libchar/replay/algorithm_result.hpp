@@ -19,6 +19,7 @@ namespace libchar {
 
 /// One true input as one algorithm estimated it.
 struct InputScore {
+  std::string name, unit;  ///< of the input, in a report
   ErrorScore error;
   double optimum_ratio = 0;  ///< RMSE / optimum RMSE of this input; NaN: unknown
   AllanCurve allan;          ///< overlapping Allan deviation of the error; no points: not computed
@@ -47,7 +48,7 @@ struct BlindScore {
 struct AlgorithmResult {
   std::string label;  ///< the name, with its options when one algorithm runs twice
   const fusion::Description* description = nullptr;
-  fusion::Settings settings;
+  fusion::Settings settings = fusion::Settings();
   bool ran = false;
   std::string why;     ///< why it did not run, a sentence
   bool bound = false;  ///< it looked at the reference of the run itself

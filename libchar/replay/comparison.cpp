@@ -20,7 +20,7 @@
 namespace libchar {
 namespace {
 
-Difference difference(const AlgorithmSummary& a, const AlgorithmSummary& b) {
+Difference difference(const ReplayReport::Algorithm& a, const ReplayReport::Algorithm& b) {
   if (std::isnan(a.rmse) || std::isnan(b.rmse)) return Difference::unknown;
   if (a.rmse == b.rmse) return Difference::equal;
   if (std::isnan(a.rmse_ci95.low) || std::isnan(b.rmse_ci95.low)) return Difference::unknown;
@@ -33,7 +33,7 @@ double change(double a, double b) {
   return a > 0 ? b / a - 1 : a == b ? 0 : kNone;
 }
 
-ComparedAlgorithm row(const AlgorithmSummary* a, const AlgorithmSummary* b) {
+ComparedAlgorithm row(const ReplayReport::Algorithm* a, const ReplayReport::Algorithm* b) {
   ComparedAlgorithm out;
   out.label = a != nullptr ? a->label : b->label;
   out.a = a;
@@ -43,19 +43,19 @@ ComparedAlgorithm row(const AlgorithmSummary* a, const AlgorithmSummary* b) {
   out.difference = difference(*a, *b);
   out.rmse_change = change(a->rmse, b->rmse);
   out.ns_change = change(a->ns_per_sample, b->ns_per_sample);
-  out.bytes_change = change(a->peak_bytes, b->peak_bytes);
+  out.bytes_change = change(a->bytes(), b->bytes());
   return out;
 }
 
 // Those without a number behind all others.
-double order(const AlgorithmSummary* one) {
+double order(const ReplayReport::Algorithm* one) {
   return one != nullptr && one->ran && !std::isnan(one->rmse)
              ? one->rmse
              : std::numeric_limits<double>::infinity();
 }
 
-std::string best_of(const ReplaySummary& r) {
-  const AlgorithmSummary* best = r.find(r.best);
+std::string best_of(const ReplayReport& r) {
+  const ReplayReport::Algorithm* best = r.find(r.best);
   return best == nullptr ? "none" : fmt::format("{} ({})", best->label, brief_text(best->rmse, 5));
 }
 
@@ -70,9 +70,7 @@ std::string comparison_verdict(const Comparison& c) {
     if (std::isfinite(one.ns_change)) ns.push_back(one.ns_change);
   }
   if (both == 0) return "No algorithm ran in both.";
-  std::string out = fmt::format("{} of {} algorithms that ran in both:",
-                                c.a.has_reference ? "RMSE" : "Leave-one-out RMS",
-                                both);
+  std::string out = fmt::format("{} of {} algorithms that ran in both:", c.a.score_words(), both);
   const char* comma = " ";
   for (const Difference d : {Difference::better,
                              Difference::worse,
@@ -91,14 +89,14 @@ std::string comparison_verdict(const Comparison& c) {
 
 }  // namespace
 
-Comparison compare_replays(ReplaySummary a, ReplaySummary b) {
+Comparison compare_replays(ReplayReport a, ReplayReport b) {
   Comparison out;
   out.a = std::move(a);
   out.b = std::move(b);
   out.unlike = unlike(out.a, out.b);
-  for (const AlgorithmSummary& one : out.a.algorithms)
+  for (const ReplayReport::Algorithm& one : out.a.algorithms)
     out.algorithms.push_back(row(&one, out.b.find(one.label)));
-  for (const AlgorithmSummary& one : out.b.algorithms)
+  for (const ReplayReport::Algorithm& one : out.b.algorithms)
     if (out.a.find(one.label) == nullptr) out.algorithms.push_back(row(nullptr, &one));
   std::stable_sort(out.algorithms.begin(),
                    out.algorithms.end(),

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libchar/core/document/enum_table.hpp"
-#include "libchar/replay/replay_summary.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
 
@@ -30,7 +30,7 @@ inline constexpr auto enum_table<Difference> =
 /// One label; a side that does not have it is null.
 struct ComparedAlgorithm {
   std::string label;
-  const AlgorithmSummary *a = nullptr, *b = nullptr;
+  const ReplayReport::Algorithm *a = nullptr, *b = nullptr;
   Difference difference = Difference::unknown;
   double rmse_change = 0;   ///< B / A - 1; NaN: one side has none
   double ns_change = 0;     ///< B / A - 1 of ns per sample
@@ -40,7 +40,7 @@ struct ComparedAlgorithm {
 };
 
 struct Comparison {
-  ReplaySummary a, b;
+  ReplayReport a, b;
   /// Why these are not two replays of one scene; empty: they are.
   std::vector<std::string> unlike;
   /// What differs and makes no other scene of it: learning window, options, noise levels, program.
@@ -58,7 +58,7 @@ struct Comparison {
 };
 
 /// Puts them side by side, like or unlike.
-Comparison compare_replays(ReplaySummary a, ReplaySummary b);
+Comparison compare_replays(ReplayReport a, ReplayReport b);
 
 /// Throws Error(input) that names the differences when the two are not of one scene.
 void refuse_unlike(const Comparison& comparison);

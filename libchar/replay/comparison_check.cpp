@@ -15,14 +15,14 @@ namespace {
 
 struct Metric {
   const char* name;
-  double AlgorithmSummary::*value;
+  double (*value)(const ReplayReport::Algorithm& algorithm);
   double slack;  ///< smaller differences fail no check
 };
 // The same algorithm holds some ten bytes more or less by where the allocator finds room.
-constexpr Metric kMetrics[] = {{"rmse", &AlgorithmSummary::rmse, 0},
-                               {"regret", &AlgorithmSummary::regret, 0},
-                               {"ns_per_sample", &AlgorithmSummary::ns_per_sample, 0},
-                               {"peak_bytes", &AlgorithmSummary::peak_bytes, 1024}};
+constexpr Metric kMetrics[] = {{"rmse", [](const auto& a) { return a.rmse; }, 0},
+                               {"regret", [](const auto& a) { return a.regret; }, 0},
+                               {"ns_per_sample", [](const auto& a) { return a.ns_per_sample; }, 0},
+                               {"peak_bytes", [](const auto& a) { return a.bytes(); }, 1024}};
 
 const Metric& metric_of(std::string_view name) {
   return *std::find_if(std::begin(kMetrics), std::end(kMetrics), [&](const Metric& metric) {
@@ -30,8 +30,8 @@ const Metric& metric_of(std::string_view name) {
   });
 }
 
-double value_of(const AlgorithmSummary* one, const Metric& metric) {
-  return one != nullptr && one->ran ? one->*metric.value : std::nan("");
+double value_of(const ReplayReport::Algorithm* one, const Metric& metric) {
+  return one != nullptr && one->ran ? metric.value(*one) : std::nan("");
 }
 
 std::string number(double value, bool share) {

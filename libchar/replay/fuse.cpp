@@ -155,8 +155,7 @@ class Fusing {
   std::vector<std::vector<double>> out_;
   // Faults: what the log of the algorithm says of the sensors, up to where it was read.
   std::size_t events_read_ = 0;
-  std::vector<char> out_now_;         // of each row
-  std::vector<std::ptrdiff_t> open_;  // of each row: its place in result_.faults, -1: none
+  std::vector<char> out_now_;  // of each row
   std::int64_t done_ = 0;
   // Is the noise that of where it was learnt?
   std::vector<Eigen::Index> checked_;  // rows of the algorithm whose sensors are in the log
@@ -368,7 +367,6 @@ void Fusing::make_runner() {
     if (!learnt_.sensors[i].left_out) sensor_of_.push_back(i);
   }
   out_now_.assign(sensor_of_.size(), 0);
-  open_.assign(sensor_of_.size(), -1);
   try {
     fusion::Settings settings(entry_->options);
     for (const auto& [name, value] : algorithm_.options) settings.set(name, value);
@@ -463,20 +461,10 @@ void Fusing::fill_flags(const Eigen::MatrixXd& samples, std::size_t first) {
 /// Events of the instants before `end`. What scatters only stays in use, with less weight.
 void Fusing::note_faults(std::int64_t end) {
   const auto events = runner_->faults()->events();
-  const double rate_hz = instants_->info().rate_hz;
   for (; events_read_ < events.size() && events[events_read_].sample < end; ++events_read_) {
     const fusion::FaultEvent& event = events[events_read_];
-    const auto row = static_cast<std::size_t>(event.channel);
-    const double time_s = static_cast<double>(event.sample) / rate_hz;
-    out_now_[row] = event.faulty && event.rule != fusion::FaultRule::noise ? 1 : 0;
-    if (event.faulty && open_[row] < 0) {
-      open_[row] = std::ssize(result_.faults);
-      result_.faults.push_back(
-          {sensor_of_[row], std::string(fusion::name(event.rule)), time_s, {}});
-    } else if (!event.faulty && open_[row] >= 0) {
-      result_.faults[static_cast<std::size_t>(open_[row])].to_s = time_s;
-      open_[row] = -1;
-    }
+    out_now_[static_cast<std::size_t>(event.channel)] =
+        event.faulty && event.rule != fusion::FaultRule::noise ? 1 : 0;
   }
 }
 
@@ -538,7 +526,9 @@ void Fusing::tell() {
   check_noise();
   runner_->remarks(result_.warnings);
   const fusion::FaultLog* const log = runner_->faults();
-  if (log != nullptr && log->dropped() > 0)
+  if (log == nullptr) return;
+  result_.faults = found_faults(*log, sensor_of_, 0, instants_->info().rate_hz);
+  if (log->dropped() > 0)
     result_.warnings.add("faults_not_kept",
                          "more faults than are kept: flags of sensors behind the last one are not "
                          "complete",

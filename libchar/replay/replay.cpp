@@ -415,7 +415,8 @@ SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) c
   out.missing =
       static_cast<double>(sensors_[i].missing) / static_cast<double>(plan_.run_to - plan_.run_from);
   out.constant = sensors_[i].constant;
-  if (!out.constant) out.copy_of = copies_.original_of(i);
+  if (const auto original = copies_.original_of(i); original && !out.constant)
+    out.copy_of = scene_.sensors[*original].name;
   out.h = scene_.sensors[i].h;
   return out;
 }
@@ -456,11 +457,11 @@ void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
     if (sensor.constant)
       out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
   for (const SensorResult& sensor : out.sensors)
-    if (sensor.copy_of)
+    if (!sensor.copy_of.empty())
       out.warnings.add(
           "copied_sensor",
           "sensors that repeat another one, sample by sample: one sensor counted twice",
-          sensor.name + " repeats " + out.sensors[*sensor.copy_of].name);
+          sensor.name + " repeats " + sensor.copy_of);
 }
 
 // One that ran, and by which of its errors it is compared with others; empty: by none.
@@ -560,7 +561,7 @@ ReplayResult Replay::collect() {
   for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
   judge_best_sensor(out, meters, single, scoring);
   add_tracks(out);
-  if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, run_end_s(out));
+  if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, out.end_s());
   if (steps_) note_step_noise(steps_->result(), learnt_);
   out.learnt = learnt_;
   if (out.best && !out.offsets_decide) out.learnt.recommended = out.algorithms[*out.best].label;

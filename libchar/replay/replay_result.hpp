@@ -35,38 +35,43 @@ struct DetectionAt {
   std::size_t alarms_without_fault = 0;
 };
 
-struct ReplayResult {
+/// What a result and its report say alike.
+struct ReplayFacts {
+  std::vector<std::string> plan;  ///< sentences: what was read, learnt, run, skipped and why
+  double rate_hz = 0;             ///< of the instants that are fused
+  std::uint64_t instants = 0;     ///< of the run
+  double start_s = 0;             ///< of the run, seconds from the recording's first sample
+  double scored_from_s = 0;       ///< behind the warm-up
+  std::optional<TimeWindow> learning;
+  TimeWindow evaluation;
+  double window_s = 0;  ///< of the window RMS
+  std::vector<SensorResult> sensors;
+  std::vector<InputResult> inputs;
+  /// by `false_alarm_s`; empty: no fault is known, or no algorithm that runs has the detector
+  std::vector<DetectionAt> detection;
+  /// the 95 % interval of the best method's RMSE over that of the best sensor; one input and a reference
+  std::optional<Interval> best_over_sensor;
+  /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen
+  bool offsets_decide = false;
+
+  double end_s() const { return start_s + static_cast<double>(instants) / rate_hz; }
+};
+
+struct ReplayResult : ReplayFacts {
   Scene scene;
   std::vector<LogInfo> logs;  ///< the recording, the reference's own log; empty for a simulation
   std::vector<std::string> command;  ///< as typed; set by the caller
   std::vector<Entry> settings;       ///< effective ones, for provenance
-  std::vector<std::string> plan;     ///< sentences: what was read, learnt, run, skipped and why
-  double rate_hz = 0;                ///< of the instants that are fused
-  std::uint64_t instants = 0;        ///< of the run
-  double start_s = 0;                ///< of the run, seconds from the recording's first sample
-  double scored_from_s = 0;          ///< behind the warm-up
-  std::optional<TimeWindow> learning;
-  TimeWindow evaluation;
-  double window_s = 0;  ///< of the window RMS
-  double lag_s = 0;     ///< the sensors lag the reference by this
+  double lag_s = 0;                  ///< the sensors lag the reference by this
   bool lag_estimated = false;
   std::optional<FoundOffset> reference_offset;  ///< where the scene asked for it
   bool has_reference = false;
   std::string reference_use;  ///< "each instant", "mean over its intervals of 3600 s"…
-  std::vector<SensorResult> sensors;
-  std::vector<InputResult> inputs;
   std::optional<AlignmentResult> alignment;
-  std::vector<SensorFault> faults;  ///< that the scene knows, injected or simulated
-  /// by `false_alarm_s`; empty: no fault is known, or no algorithm that runs has the detector
-  std::vector<DetectionAt> detection;
+  std::vector<SensorFault> faults;          ///< that the scene knows, injected or simulated
   std::vector<AlgorithmResult> algorithms;  ///< in the order of the table
   std::optional<std::size_t> best;          ///< of the methods (no bounds) by `rmse`
-  /// the sensor with the smallest error, and the 95 % interval of the best method's RMSE over its;
-  /// one input and a reference
-  std::optional<std::size_t> best_sensor;
-  std::optional<Interval> best_over_sensor;
-  /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen
-  bool offsets_decide = false;
+  std::optional<std::size_t> best_sensor;   ///< of the smallest error; one input and a reference
   RunTracks tracks;
   LearntFusion learnt;  ///< of the array and of every algorithm that ran: what `fuse` applies
   Warnings warnings;
@@ -74,10 +79,5 @@ struct ReplayResult {
   WorkDone counted{};  ///< all of it
   double seconds = 0;  ///< measured
 };
-
-/// Of the run, seconds from the recording's first sample.
-inline double run_end_s(const ReplayResult& result) {
-  return result.start_s + static_cast<double>(result.instants) / result.rate_hz;
-}
 
 }  // namespace libchar

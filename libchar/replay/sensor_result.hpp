@@ -22,7 +22,7 @@ struct SensorResult {
   double offset = 0;                     ///< subtracted (mean over the rest)
   double missing = 0;                    ///< share of the instants of the run
   bool constant = false;                 ///< never changed during the run
-  std::optional<std::size_t> copy_of;    ///< the earlier sensor that it repeats, sample by sample
+  std::string copy_of;                   ///< the earlier sensor that it repeats, sample by sample
   std::vector<double> h;
 };
 

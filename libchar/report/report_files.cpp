@@ -25,9 +25,8 @@ std::vector<OutputFile> report_files(const CharacterizationView& view,
   for (const ChannelResult& c : result.channels) {
     if (!c.fit) continue;
     const std::string name = unused_file_name_for(c.channel.name, taken);
-    outputs.push_back(
-        {(folder / (name + ".sensor.yaml")).string(),
-         model_yaml(sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan))});
+    outputs.push_back({(folder / (name + ".sensor.yaml")).string(),
+                       model_yaml(sensor_model_from(c, result.log))});
   }
   name_files(document, outputs);
   outputs[1].text = dump_json(document);

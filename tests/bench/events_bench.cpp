@@ -166,12 +166,12 @@ void print_recording(const std::string& path, double rate_hz) {
     const EventSeries series = event_series(record, rate_hz);
     const Motion motion = find_motion(series);
     fmt::print("column {}:\n", c);
-    for (const std::string& sentence : motion.sentences) fmt::print("   {}\n", sentence);
-    for (const std::string& sentence : find_digital_faults(record, rate_hz).sentences)
-      fmt::print("   {}\n", sentence);
+    for (const Finding& one : motion.findings) fmt::print("   {}\n", one.sentence);
+    for (const Finding& one : find_digital_faults(record, rate_hz).findings)
+      fmt::print("   {}\n", one.sentence);
     if (motion.whole) continue;
-    for (const std::string& sentence : find_events(series, fitted_powers()).sentences)
-      fmt::print("   {}\n", sentence);
+    for (const Finding& one : find_events(series, fitted_powers()).findings)
+      fmt::print("   {}\n", one.sentence);
   }
 }
 

@@ -178,8 +178,8 @@ void print_parts(const std::filesystem::path& folder, const Source& source) {
   fmt::print("  {} of {} pairs of quarters rejected at 1 %\n", pairs.rejected, pairs.count);
   const Characterization whole = characterize(recording, options_for(source));
   for (const ChannelResult& channel : whole.channels) {
-    for (const std::string& problem : channel.problems)
-      fmt::print("  whole record, {}: {}\n", channel.channel.name, problem);
+    for (const Finding& problem : channel.findings)
+      fmt::print("  whole record, {}: {}\n", channel.channel.name, problem.sentence);
     if (!channel.fit) continue;
     for (const Event& event : channel.fit->events)
       fmt::print("  whole record, {}: {}\n", channel.channel.name, event_sentence(event, ""));
@@ -211,7 +211,7 @@ void print_curves(const std::filesystem::path& folder, const std::string& file) 
   for (const NamedCurve& curve : table->curves) {
     const NoiseFit fit = fit_curve(curve.curve);
     print_fit(curve.name, fit);
-    for (const std::string& sentence : fit.sentences) fmt::print("    {}\n", sentence);
+    for (const Finding& one : fit.findings) fmt::print("    {}\n", one.sentence);
   }
   fmt::print("\n");
 }
@@ -222,7 +222,7 @@ void print_clock(const std::filesystem::path& folder, const Source& source) {
   for (const ChannelResult& channel : clock.channels)
     if (channel.fit) {
       print_fit(channel.channel.name, *channel.fit);
-      for (const std::string& sentence : channel.fit->sentences) fmt::print("    {}\n", sentence);
+      for (const Finding& one : channel.fit->findings) fmt::print("    {}\n", one.sentence);
     }
   fmt::print("\n");
 }

@@ -43,7 +43,7 @@ TEST_CASE("a hole of half the record, or a tenth, is no change of the noise") {
     const Characterization result = of(y);
     const ChannelResult& channel = result.channels[0];
     CAPTURE(share);
-    CHECK(channel.problems.empty());
+    CHECK(channel.findings.empty());
     REQUIRE(channel.fit);
     CHECK(*(*channel.fit)[Term::white].value == Approx(0.001).epsilon(0.03));
   }
@@ -84,10 +84,10 @@ TEST_CASE("a frequency far from nominal, or with none, is doubted in a sentence"
   for (const auto& [nominal, sentence] :
        {std::pair{0.0, "without `nominal_frequency`"}, {5e6, "far from the nominal"}, {1e7, ""}}) {
     options.nominal_frequency = nominal;
-    const auto problems = characterize(recording, options).channels[0].problems;
+    const auto problems = characterize(recording, options).channels[0].findings;
     CAPTURE(nominal);
     REQUIRE(problems.empty() == (nominal == 1e7));
-    if (!problems.empty()) CHECK(problems[0].find(sentence) != std::string::npos);
+    if (!problems.empty()) CHECK(problems[0].sentence.find(sentence) != std::string::npos);
   }
 }
 
@@ -115,10 +115,10 @@ TEST_CASE("the model of half a quartz clock is its Allan curve, no narrow filter
 
 TEST_CASE("a record of five samples is called too short, not constant") {
   const Characterization result = of(white(5, 8));
-  const auto& problems = result.channels[0].problems;
+  const auto& problems = result.channels[0].findings;
   REQUIRE_FALSE(problems.empty());
-  CHECK(std::none_of(problems.begin(), problems.end(), [](const std::string& p) {
-    return p.find("constant") != std::string::npos;
+  CHECK(std::none_of(problems.begin(), problems.end(), [](const Finding& p) {
+    return p.sentence.find("constant") != std::string::npos;
   }));
 }
 
@@ -151,8 +151,9 @@ TEST_CASE(
   CHECK(one.channels[0].quality.beyond == 1);
   CHECK(one.channels[0].quality.missing == 1);
   CHECK(one.channels[0].quality.standard_deviation == Approx(0.01).epsilon(0.05));
-  REQUIRE(one.channels[0].quality.suggestions.size() == 1);
-  CHECK_THAT(one.channels[0].quality.suggestions[0], Catch::Contains("1 sample beyond 1×10¹⁰⁰"));
+  REQUIRE(one.channels[0].quality.findings.size() == 1);
+  CHECK_THAT(one.channels[0].quality.findings[0].sentence,
+             Catch::Contains("1 sample beyond 1×10¹⁰⁰"));
   for (double& v : y) v *= 1e160;
   const Characterization all = of(y);
   CHECK_FALSE(all.channels[0].fit);
@@ -167,7 +168,7 @@ TEST_CASE("noise of 1e-200 or 1e-310 is refused with the reason, not fitted and 
     CHECK_FALSE(tiny.channels[0].fit);
     CHECK(tiny.channels[0].spectrum.value.empty());
     CHECK(std::isnan(tiny.channels[0].quality.standard_deviation));
-    CHECK_THAT(tiny.channels[0].problems[0], Catch::Contains("do not fit into a double"));
+    CHECK_THAT(tiny.channels[0].findings[0].sentence, Catch::Contains("do not fit into a double"));
   }
 }
 

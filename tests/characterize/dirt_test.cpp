@@ -66,8 +66,8 @@ TEST_CASE("heavy tails of a record of leaves are left as they are") {
   const ChannelResult a = characterize(recording, with).channels[0],
                       b = characterize(recording, without).channels[0];
   CHECK(spikes_of(a) == nullptr);
-  REQUIRE(!a.fit->sentences.empty());
-  CHECK(a.fit->sentences[0].find("not taken for spikes") != std::string::npos);
+  REQUIRE(!a.fit->findings.empty());
+  CHECK(a.fit->findings[0].sentence.find("not taken for spikes") != std::string::npos);
   CHECK((*a.fit)[Term::white].value == (*b.fit)[Term::white].value);
 }
 
@@ -99,8 +99,9 @@ TEST_CASE("a counter gets curves and no fit, and the reason is said") {
       characterize(recording_of({index, modulo, white_record(5000, 1)}, 100), {});
   for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
     CHECK_FALSE(result.channels[c].fit);
-    REQUIRE(result.channels[c].problems.size() == 1);
-    CHECK(result.channels[c].problems[0].find("no noise fit: the channel rises by 1 with") == 0);
+    REQUIRE(result.channels[c].findings.size() == 1);
+    CHECK(result.channels[c].findings[0].sentence.find(
+              "no noise fit: the channel rises by 1 with") == 0);
     CHECK(!result.channels[c].allan.points.empty());
   }
   CHECK(result.channels[2].fit);

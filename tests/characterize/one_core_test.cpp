@@ -90,7 +90,7 @@ void same(const NoiseFit& a, const NoiseFit& b) {
     CHECK(a.term[t].status == b.term[t].status);
   }
   CHECK(a.goodness.p == b.goodness.p);
-  CHECK(a.sentences == b.sentences);
+  CHECK(a.findings == b.findings);
   CHECK(a.events.size() == b.events.size());
   CHECK(a.stationarity.tested == b.stationarity.tested);
   REQUIRE(a.remedies.size() == b.remedies.size());
@@ -103,7 +103,7 @@ void same(const NoiseFit& a, const NoiseFit& b) {
 
 void same(const Characterization& a, const Characterization& b) {
   const ChannelResult &x = a.channels.at(0), &y = b.channels.at(0);
-  CHECK(x.problems == y.problems);
+  CHECK(x.findings == y.findings);
   CHECK(x.quality.difference_kurtosis == y.quality.difference_kurtosis);
   CHECK(x.quality.mean == y.quality.mean);
   CHECK(x.spectrum.value == y.spectrum.value);
@@ -182,7 +182,7 @@ TEST_CASE(
   CHECK(clean.fit->stationarity.tested);
   CHECK(clean.fit->stationarity.steady);
   CHECK(clean.fit->events.empty());
-  CHECK(clean.problems.empty());
+  CHECK(clean.findings.empty());
   const Coefficient white = (*clean.fit)[Term::white], walk = (*clean.fit)[Term::walk];
   REQUIRE(white.value);
   REQUIRE(walk.value);

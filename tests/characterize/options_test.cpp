@@ -103,8 +103,8 @@ TEST_CASE("limits of the averaging time hold, of a short log and of one of two l
       CHECK(limited[0].allan.points[k].deviation == all[0].allan.points[k + 3].deviation);
     const auto none = run([](auto& o) { o.allan.tau_min_s = 1e5; }, kEnough, is_long);
     CHECK(none[0].allan.points.empty());
-    REQUIRE(none[0].problems.size() == 1);
-    CHECK_THAT(none[0].problems[0], Contains("no averaging time that was asked for"));
+    REQUIRE(none[0].findings.size() == 1);
+    CHECK_THAT(none[0].findings[0].sentence, Contains("no averaging time that was asked for"));
   }
 }
 
@@ -192,7 +192,7 @@ TEST_CASE("what the fit checks itself with does not depend on what is plotted") 
       for (std::size_t c = 0; c < plain.size(); ++c) {
         const NoiseFit &a = *plain[c].fit, &b = *other[c].fit;
         CHECK(a.theta == b.theta);
-        CHECK(a.sentences == b.sentences);
+        CHECK(a.findings == b.findings);
         REQUIRE(a.second_opinion.has_value());
         REQUIRE(b.second_opinion.has_value());
         CHECK(a.second_opinion->value == b.second_opinion->value);

@@ -63,8 +63,7 @@ TEST_CASE("still: the longest stretch in which no channel moves, and a stretch a
     REQUIRE(channel.fit);
     CHECK((*channel.fit)[Term::white].value.value() == Approx(5e-3).epsilon(0.03));
     CHECK(channel.fit->moving_s.empty());
-    const SensorModel model =
-        sensor_model_from(channel.channel, found.log, channel.quality, *channel.fit, channel.allan);
+    const SensorModel model = sensor_model_from(channel, found.log);
     REQUIRE(model.stretch_s);
     CHECK(model.stretch_s->low == found.still->from_s);
   }
@@ -137,9 +136,10 @@ TEST_CASE("digital faults stand in the result, and their coefficients are not be
   for (double& value : recording.samples[0]) value = std::clamp(value, -sigma, sigma);
   for (double& value : recording.samples[1]) value = std::round(value / (5 * sigma)) * 5 * sigma;
   const auto find = [](const ChannelResult& channel, const std::string& words) {
-    const auto& p = channel.problems;
-    return std::any_of(
-        p.begin(), p.end(), [&](const auto& s) { return s.find(words) != std::string::npos; });
+    const auto& p = channel.findings;
+    return std::any_of(p.begin(), p.end(), [&](const auto& s) {
+      return s.sentence.find(words) != std::string::npos;
+    });
   };
   const Characterization result = characterize(recording, only_fit());
   const ChannelResult &clipped = result.channels[0], &coarse = result.channels[1];
@@ -162,5 +162,5 @@ TEST_CASE("digital faults stand in the result, and their coefficients are not be
   REQUIRE(twice.channels[0].digital.held);
   CHECK(twice.channels[0].digital.held->sensor_rate_hz == Approx(25));
   CHECK(find(twice.channels[0], "the sensor gives 25.00 Hz where the log has 50.00 Hz"));
-  CHECK(twice.channels[1].problems.empty());
+  CHECK(twice.channels[1].findings.empty());
 }

@@ -98,11 +98,11 @@ void agree(const Characterization& a, const Characterization& b, const Digits& d
   REQUIRE(a.channels.size() == b.channels.size());
   for (std::size_t c = 0; c < a.channels.size(); ++c) {
     const ChannelResult &x = a.channels[c], &y = b.channels[c];
-    REQUIRE(x.problems == y.problems);
+    REQUIRE(x.findings == y.findings);
     REQUIRE(x.quality.samples == y.quality.samples);
     REQUIRE(x.quality.missing == y.quality.missing);
     REQUIRE(x.quality.distinct_values == y.quality.distinct_values);
-    REQUIRE(x.quality.suggestions == y.quality.suggestions);
+    REQUIRE(x.quality.findings == y.quality.findings);
     REQUIRE(x.quality.mean == Approx(y.quality.mean).epsilon(digits.mean));
     REQUIRE(x.quality.standard_deviation ==
             Approx(y.quality.standard_deviation).epsilon(digits.mean));

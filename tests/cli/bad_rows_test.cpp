@@ -165,18 +165,18 @@ std::string place_in_words(const std::string& place) {
 
 void check_warning(const BadRow& row, const test::Ran& ran) {
   CHECK(ran.code == 0);
-  CHECK_THAT(ran.err, Catch::Contains(": warning: "));
+  CHECK_THAT(ran.err, Catch::Contains(": warning: ") || Catch::Contains(": note: "));
   bool found = row.code == "-", placed = row.place == "-";
   const auto document = nlohmann::json::parse(ran.out, nullptr, false);
   REQUIRE(document.is_object());
-  for (const auto& warning : document["warnings"]) {
+  for (const auto& warning : document["findings"]) {
     if (warning["code"] != row.code && row.code != "-") continue;
     found = true;
     CHECK(warning["count"].get<std::uint64_t>() > 0);
-    for (const auto& where : warning["where"])
+    for (const auto& where : warning["where"]["rows"])
       placed = placed || where.get<std::string>().find(place_in_words(row.place)) == 0;
   }
-  INFO(document["warnings"].dump());
+  INFO(document["findings"].dump());
   CHECK(found);
   CHECK(placed);
 }

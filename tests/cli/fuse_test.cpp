@@ -115,7 +115,7 @@ TEST_CASE("fuse: --json, --map and refusals that name flags") {
   CHECK(document["with"]["sha256"].get<std::string>().size() == 64);
   CHECK(document["sensors"][1]["channel"].is_null());
   CHECK(document["sensors"][1]["missing"] == 1);
-  CHECK(document["warnings"][0]["code"] == "sensor_not_in_log");
+  CHECK(document["findings"][0]["code"] == "sensor_not_in_log");
   CHECK_THAT(json.err, Contains("does not have these sensors"));
   const auto mapped = bench.fuse("other.csv", "run", "b.csv", {"--map", "b=q", "--quiet"});
   CHECK(mapped.code == 0);

@@ -47,7 +47,7 @@ TEST_CASE("inspect --json keeps its promise to scripts") {
   CHECK(document["command"][1] == "inspect");
   CHECK(document["input"][0]["path"] == log);
   CHECK(document["input"][0]["bytes"] == 146);
-  CHECK(document["warnings"][0]["code"] == "infinite_value");
+  CHECK(document["findings"][0]["code"] == "infinite_value");
   const libchar::Json& recording = document["recordings"][0];
   for (const char* key :
        {"file", "sha256", "rows", "channels", "rate_hz", "jitter_s", "gaps", "repairs"})

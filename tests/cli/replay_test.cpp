@@ -225,8 +225,8 @@ TEST_CASE("replay: windows from the command line win over the scene's") {
   CHECK(report["evaluation"]["to_s"] == 60);
   report = window({"--evaluation", "..30"});
   CHECK(report["evaluation"]["from_s"] == 0);
-  CHECK(report["warnings"].size() == 1);  // it holds the learning window
-  CHECK(report["warnings"][0]["code"] == "learning_in_evaluation");
+  CHECK(report["findings"].size() == 1);  // it holds the learning window
+  CHECK(report["findings"][0]["code"] == "learning_in_evaluation");
   for (const char* bad : {"20", "50..20", "20..20", "x..5", "-1..5", "20..."}) {
     INFO(bad);
     const auto ran = bench.replay({"-o", bench.path("no"), "--evaluation", bad});

@@ -282,3 +282,53 @@ TEST_CASE("fields: the schema says types, words and what is always there") {
         "at 230 V, in W");
   CHECK(schema["properties"]["turns"].dump() == R"({"type":"integer"})");
 }
+
+namespace {
+
+struct Gauge {
+  double level = 1, most = 5;
+  std::vector<std::vector<double>> series;
+};
+
+struct NamedGauge : Gauge {
+  std::string note;
+  Interval ci95{0, 1};
+};
+
+const Fields<NamedGauge>& gauge_fields() {
+  using T = NamedGauge;
+  static const Fields<T> rows = always(Fields<T>{
+      field<&T::level>("level"),
+      field<&T::most>("most", {.known = when<[](const T& g) { return std::isfinite(g.most); }>}),
+      field<&T::series>("series"),
+      field_or_null<&T::note>("note"),
+      field<&T::ci95>("ci95"),
+  });
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("fields: rows of a base class, lists of lists, and what null says in a report") {
+  NamedGauge gauge;
+  gauge.level = NAN;
+  gauge.most = INFINITY;
+  gauge.series = {{1, NAN}, {}};
+  gauge.ci95 = {-INFINITY, 2};
+  const Json json = document_of(gauge_fields(), gauge);
+  CHECK(json.dump() ==
+        R"({"level":null,"most":null,"series":[[1.0,null],[]],"note":null,"ci95":[null,2.0]})");
+  const Document document = parse_document(dump_json(json), "g.json");
+  NamedGauge back;
+  read_fields(gauge_fields(), MapReader(document, "g.json", ""), back);
+  CHECK(std::isnan(back.level));
+  CHECK(back.most == 5);  // its row says what null means
+  REQUIRE(back.series.size() == 2);
+  CHECK(back.series[0][0] == 1);
+  CHECK(std::isnan(back.series[0][1]));
+  CHECK(back.note.empty());
+  CHECK(back.ci95 == gauge.ci95);
+  const Json schema = schema_of(gauge_fields().rows);
+  CHECK(schema["properties"]["note"]["type"].dump() == R"(["string","null"])");
+  CHECK(schema["properties"]["series"]["items"]["items"]["type"].dump() == R"(["number","null"])");
+}

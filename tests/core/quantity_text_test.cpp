@@ -107,7 +107,11 @@ TEST_CASE("typed durations, rates and sizes have their units") {
   CHECK(parse_rate_hz("10MHz") == 1e7);
   CHECK(parse_rate_hz("1e-9") == 1e-9);
   CHECK(parse_rate_hz("1e9") == 1e9);
-  for (const char* bad : {"0", "-5", "9e-10", "1.1e9", "5GHz", "5 per s"})
+  CHECK(parse_rate_hz("1/300") == 1.0 / 300);
+  CHECK(parse_rate_hz("1/300Hz") == 1.0 / 300);
+  CHECK(parse_rate_hz("5min") == 1.0 / 300);
+  CHECK(parse_rate_hz("2ms") == 500);
+  for (const char* bad : {"0", "-5", "9e-10", "1.1e9", "5GHz", "5 per s", "1/0", "/5", "0s"})
     CHECK_THAT(refusal_of(kRate, bad), Catch::Contains("a sampling rate above zero"));
   CHECK(parse_bytes("4096") == 4096);
   CHECK(parse_bytes("64k") == 65536);

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "libchar/core/table/detail/text_table.hpp"
+
 using libchar::text_table;
 using libchar::width_of;
 using libchar::wrapped;

@@ -487,3 +487,39 @@ TEST_CASE("a misfit is refused, or goes with a sentence, generic JSON keeps the 
     CHECK(made.text.find("shape of the noise") != std::string::npos);
   }
 }
+
+TEST_CASE(
+    "a bad finding is refused with its remedy, a caution goes with its sentence, a note does not") {
+  std::vector<SensorModel> models = test::euroc_imu();
+  Finding moved = finding("motion", "The sensor was moved or shaken in 1 stretch.");
+  models[0].findings = {moved, finding("heavy_tails", "Tails are heavy.")};
+  for (const ExportTarget& target : export_targets()) {
+    if (target.takes.status) continue;
+    CAPTURE(target.name);
+    const std::string name(target.name);
+    models[0].findings[0] = moved;
+    const std::string text = exported(name, models).text;
+    CHECK(text.find("moved or shaken") != std::string::npos);
+    CHECK(text.find("Tails are heavy") == std::string::npos);
+    models[0].findings[0].severity = Severity::bad;
+    models[0].findings[0].help = {{"Use the longest still stretch.", {{"still", "auto"}}}};
+    CHECK_THAT(refusal(name, models), Contains("moved or shaken") && Contains("`still` auto"));
+    ExportOptions options;
+    options.anyway = true;
+    CHECK(exported(name, models, options).text.find("moved or shaken") != std::string::npos);
+  }
+}
+
+TEST_CASE("an undetermined Gauss-Markov process does not become a random walk") {
+  std::vector<SensorModel> models = test::euroc_imu();
+  for (SensorModel& m : models) {
+    m.noise[2] = {};
+    m.noise[2].status = Status::not_detected;
+    m.noise[2].upper95 = 1e-6;
+    m.gauss_markov = {1e-3, 100, {}, {}, Status::undetermined};
+  }
+  const std::string text = exported("kalibr", models).text;
+  CHECK(text.find("upper 95 % limit") != std::string::npos);
+  for (SensorModel& m : models) m.gauss_markov.status = Status::detected;
+  CHECK(exported("kalibr", models).text.find("Gauss-Markov driving density") != std::string::npos);
+}

@@ -47,7 +47,7 @@ TEST_CASE("a fit that the Allan curve bears out is left alone") {
   const Mixture theta = {1e-4, 1e-6, 1e-8, 0, 0};
   NoiseFit fit = fit_of(theta);
   answer_contradictions(fit, curve_of(theta));
-  CHECK(fit.sentences.empty());
+  CHECK(fit.findings.empty());
   for (std::size_t t = 0; t < 3; ++t) CHECK(fit.term[t].status == Status::detected);
 }
 
@@ -56,7 +56,7 @@ TEST_CASE(
     "where") {
   NoiseFit fit = fit_of({1e-4, 0, 1e-5, 0, 0});
   answer_contradictions(fit, curve_of({1e-4, 0, 1e-8, 0, 0}));
-  REQUIRE(fit.sentences.size() == 1);
+  REQUIRE(fit.findings.size() == 1);
   CHECK(fit[Term::walk].status == Status::undetermined);
   CHECK(fit[Term::walk].ci95.low == 0);  // it may be absent
   CHECK(fit[Term::white].status == Status::detected);

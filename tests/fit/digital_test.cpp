@@ -32,11 +32,11 @@ TEST_CASE("digital: noise has no rails, no held values and no staircase, also wh
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     std::vector<double> y = noise(seed);
     y[77] = std::numeric_limits<double>::quiet_NaN();
-    CHECK(find_digital_faults(y, kDigitalRate).sentences.empty());
+    CHECK(find_digital_faults(y, kDigitalRate).findings.empty());
     for (const double step : {0.01, 0.1, 0.3, 0.7}) {
       INFO("seed " << seed << ", step " << step);
       CHECK(find_digital_faults(rounded(y, step * kSigma), kDigitalRate, step * kSigma)
-                .sentences.empty());
+                .findings.empty());
     }
   }
 }
@@ -63,7 +63,8 @@ TEST_CASE("digital: samples at a rail are counted, on a grid and off it") {
   CHECK_FALSE(faults.rails[0].high);
   CHECK(faults.rails[1].value == 2.2 * kSigma);
   CHECK(faults.rails[1].share == Approx(clipped / kDigitalSamples));
-  CHECK(faults.sentences[1].find("stand at the largest value, 0.110 deg/s") != std::string::npos);
+  CHECK(faults.findings[1].sentence.find("stand at the largest value, 0.110 deg/s") !=
+        std::string::npos);
 
   std::vector<double> one = noise(41);
   for (double& value : one) value = std::min(value, 2 * kSigma);

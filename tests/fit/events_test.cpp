@@ -193,7 +193,7 @@ TEST_CASE("events: a step is found, placed and sized, and K is what it was witho
     CHECK(event.at_ci95.high >= at_s);
     CHECK(event.size == Approx(sigmas * kEventSigma).margin(3.5 * event.sd));
     CHECK(event.score > event.threshold);
-    CHECK(found.sentences[0].find("A step of") == 0);
+    CHECK(found.findings[0].sentence.find("A step of") == 0);
     subtract_events(found.events, kEventRate, y);
     const NoiseFit before = fit_record(clean, kEventRate, nullptr, all_terms());
     const NoiseFit after = fit_record(y, kEventRate, nullptr, all_terms());
@@ -385,7 +385,7 @@ TEST_CASE("events: jumps between two levels are telegraph noise, steps of unlike
   CHECK(found.telegraph->jumps >= 6);
   CHECK(found.telegraph->jumps <= jumps);
   CHECK(found.telegraph->dwell_s > 20);
-  CHECK(found.sentences.back().find("random telegraph noise") != std::string::npos);
+  CHECK(found.findings.back().sentence.find("random telegraph noise") != std::string::npos);
   for (int i = 1; i <= 7; ++i)
     add_step(unlike, 120 * i, (i % 2 == 0 ? -1 : 1) * (1 + 1.5 * i) * kEventSigma);
   const EventSearch steps = search(unlike);

@@ -48,8 +48,8 @@ bool in_model(const NoiseFit& fit) {
 }
 
 bool says(const NoiseFit& fit, const std::string& words) {
-  for (const std::string& sentence : fit.sentences)
-    if (sentence.find(words) != std::string::npos) return true;
+  for (const Finding& one : fit.findings)
+    if (one.sentence.find(words) != std::string::npos) return true;
   return false;
 }
 

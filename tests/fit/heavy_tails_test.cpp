@@ -51,8 +51,7 @@ TEST_CASE("Gaussian noise keeps the interval of its likelihood") {
   const NoiseFit fit = fit_record(y, 100, nullptr, options);
   REQUIRE(fit[Term::white].value);
   CHECK(fit[Term::white].relative_sd == Approx(0.5 * std::sqrt(2.0 / 20000)).epsilon(0.1));
-  for (const std::string& sentence : fit.sentences)
-    CHECK(sentence.find("tails") == std::string::npos);
+  for (const Finding& one : fit.findings) CHECK(one.sentence.find("tails") == std::string::npos);
 }
 
 TEST_CASE("what heavy tails add is the fourth moment's: var ln theta + excess kurtosis / n") {
@@ -64,7 +63,7 @@ TEST_CASE("what heavy tails add is the fourth moment's: var ln theta + excess ku
   CHECK(fit.covariance[0][0] == Approx((2 + 3) / n).epsilon(0.1));
   CHECK(fit[Term::white].relative_sd == Approx(0.5 * std::sqrt(5 / n)).epsilon(0.1));
   bool said = false;
-  for (const std::string& sentence : fit.sentences)
-    said = said || sentence.find("heavier tails than Gaussian noise") != std::string::npos;
+  for (const Finding& one : fit.findings)
+    said = said || one.sentence.find("heavier tails than Gaussian noise") != std::string::npos;
   CHECK(said);
 }

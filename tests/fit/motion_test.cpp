@@ -87,7 +87,7 @@ TEST_CASE("motion: a change of strength has its instant and its factor") {
     CHECK(change.at_ci95.high > 600);
     CHECK(change.factor == Approx(factor).epsilon(0.08));
     CHECK(motion.moving_s.empty());
-    CHECK(motion.sentences.size() == 1);
+    CHECK(motion.findings.size() == 1);
   }
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("motion: a recording in motion throughout is called one") {
   const Motion motion = motion_of(y);
   CHECK(motion.whole);
   CHECK_FALSE(motion.still_s.has_value());
-  REQUIRE(motion.sentences.size() == 1);
+  REQUIRE(motion.findings.size() == 1);
 }
 
 TEST_CASE("motion: signals from formulas are judged without a fit that cannot be") {

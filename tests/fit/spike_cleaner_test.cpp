@@ -258,8 +258,8 @@ TEST_CASE("heavy tails are said to be tails, and nothing is left out") {
     options.remedies = false;
     return fit_record(y, 100, nullptr, options);
   }();
-  REQUIRE(!fit.sentences.empty());
-  CHECK(fit.sentences[0].find("like the tails of heavy-tailed noise") != std::string::npos);
+  REQUIRE(!fit.findings.empty());
+  CHECK(fit.findings[0].sentence.find("like the tails of heavy-tailed noise") != std::string::npos);
   CHECK(fit[Term::white].value == as_is[Term::white].value);
 }
 
@@ -267,8 +267,8 @@ TEST_CASE("more than one wild sample in a hundred is not cleaned, and the share 
   const Record y = with_spikes(50000, 9, 0.02, 30);
   CHECK(outcome(y).verdict == SpikeVerdict::too_many);
   const NoiseFit fit = fit_record(y, 100, nullptr);
-  REQUIRE(!fit.sentences.empty());
-  CHECK(fit.sentences[0].find("2 % of the samples stand out") == 0);
+  REQUIRE(!fit.findings.empty());
+  CHECK(fit.findings[0].sentence.find("2 % of the samples stand out") == 0);
   for (const Remedy& remedy : fit.remedies) CHECK(remedy.kind != "spikes");
 }
 

@@ -66,8 +66,8 @@ TEST_CASE("temperature: what it does is found with its lag, and the walk stays w
     with += fit.theta[2];
     without += std::pow(effect.without[2].value.value_or(0), 2);
     CHECK(fit.remedies.back().kind == "temperature");
-    CHECK(std::any_of(fit.sentences.begin(), fit.sentences.end(), [](const std::string& s) {
-      return s.find("With temperature left in, K would be") == 0;
+    CHECK(std::any_of(fit.findings.begin(), fit.findings.end(), [](const Finding& s) {
+      return s.sentence.find("With temperature left in, K would be") == 0;
     }));
   }
   CHECK(covered >= kRecords - 1);

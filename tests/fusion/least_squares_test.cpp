@@ -188,7 +188,7 @@ TEST_CASE("least squares: one channel twice is one channel, however long the rec
       CHECK((w - expected).cwiseAbs().maxCoeff() < 3 / std::sqrt(static_cast<double>(rows)));
       REQUIRE(warnings.find("duplicate_channels") != nullptr);
       CHECK(warnings.find("duplicate_channels")->count == 2);
-      CHECK(warnings.find("duplicate_channels")->places[1] == "channel 5 of channel 2");
+      CHECK(warnings.find("duplicate_channels")->where.rows[1] == "channel 5 of channel 2");
     }
 }
 

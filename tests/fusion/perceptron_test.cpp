@@ -237,7 +237,7 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
     test::make("perceptron", array, {{"neurons", 64}, {"most_weights", most}})->remarks(warnings);
     REQUIRE(warnings.find("perceptron_fewer_neurons") != nullptr);
     const int neurons = static_cast<int>((most - 1) / 12);
-    CHECK_THAT(warnings.find("perceptron_fewer_neurons")->message,
+    CHECK_THAT(warnings.find("perceptron_fewer_neurons")->sentence,
                Catch::Contains("has " + std::to_string(neurons) + " neurons instead of 64"));
   }
 }

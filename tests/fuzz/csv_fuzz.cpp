@@ -80,7 +80,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.decimal = choice % 8 == 4 ? "comma" : "auto";
   options.delimiter = choice % 8 == 5 ? ";" : choice % 8 == 6 ? "space" : "auto";
   options.skip_repeated_header = (choice & 8U) != 0;
-  options.overflow_as_missing = (choice & 16U) != 0;
+  options.missing.overflow = (choice & 16U) != 0;
   if ((choice & 32U) != 0) options.rate_hz = 100;
   options.hash = (choice & 64U) != 0;
   const int file = ::memfd_create("csv", 0);

@@ -127,7 +127,7 @@ TEST_CASE("every bad CSV input gets its verdict, place and reason") {
         for (const Warning& warning : recording.info.warnings.list()) {
           verdict = "warn";
           said += one_line(warning, path) + "\n";
-          for (const std::string& p : warning.places) places.push_back(as_place(p));
+          for (const std::string& p : warning.where.rows) places.push_back(as_place(p));
         }
       } catch (const Error& error) {
         verdict = "error";

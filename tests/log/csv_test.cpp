@@ -206,7 +206,7 @@ TEST_CASE("the first line that cannot be is named with line, column and byte") {
 
 TEST_CASE("options that hints name do what they say") {
   ReadOptions options;
-  options.overflow_as_missing = true;
+  options.missing.overflow = true;
   CHECK(count(read_text("t,x\n0,1\n1,1e400\n2,3\n", options), "number_out_of_range") == 1);
   options = {};
   options.skip_repeated_header = true;
@@ -315,8 +315,8 @@ TEST_CASE("a log cut by a power failure keeps its whole rows and says what was l
 TEST_CASE("missing cells are counted by column with their places") {
   const Recording r = read_text("t,x,y\n0,,1\n1,nan,\n2,3,NA\n3,4,5\n");
   REQUIRE(count(r, "missing_cell") == 4);
-  CHECK(r.info.warnings.find("missing_cell")->message.find("x 2, y 2") != std::string::npos);
-  CHECK(r.info.warnings.find("missing_cell")->places[0] == "line 2, column 3");
+  CHECK(r.info.warnings.find("missing_cell")->sentence.find("x 2, y 2") != std::string::npos);
+  CHECK(r.info.warnings.find("missing_cell")->where.rows[0] == "line 2, column 3");
   CHECK(std::isnan(r.samples[0][0]));
   CHECK(r.samples[1][3] == 5);
 }
@@ -418,7 +418,8 @@ TEST_CASE(
     CHECK(r.samples[0].back() == 4);
     CHECK(r.samples[0].size() == 3);
     REQUIRE(count(r, "no_final_newline") == 1);
-    CHECK_THAT(r.info.warnings.find("no_final_newline")->places[0], Catch::StartsWith("line 4"));
+    CHECK_THAT(r.info.warnings.find("no_final_newline")->where.rows[0],
+               Catch::StartsWith("line 4"));
   }
   for (const char* text : {"t,x\n1,2\n2,3\n3,4\n",
                            "t,x\n1,2\n2,3\n3,\"4\"",

@@ -60,7 +60,7 @@ def wrong(program, name, whole, path):
         return ("" if len(lines) == 1 and SAID.search(lines[0]) else "no single sentence: " + said), True
     if ran.returncode != 0:
         return f"exit code {ran.returncode}: {said}", False
-    warnings = json.loads(ran.stdout)["warnings"]
+    warnings = json.loads(ran.stdout)["findings"]
     return ("" if warnings or whole or suffix in WITHOUT_END else "exit code 0, and no word of the loss"), False
 
 

@@ -52,7 +52,7 @@ TEST_CASE(
   const Recording r = read_text("t,x\n0,1,\n1,2,\n2,3,\n");
   CHECK(r.samples == std::vector<std::vector<double>>{{1, 2, 3}});
   REQUIRE(count(r, "trailing_delimiter") == 1);
-  CHECK(r.info.warnings.find("trailing_delimiter")->places[0] == "line 2, column 5");
+  CHECK(r.info.warnings.find("trailing_delimiter")->where.rows[0] == "line 2, column 5");
 }
 
 TEST_CASE("columns without a header are c0, c1 and so on, the time not counted") {

@@ -49,7 +49,7 @@ std::string said_by(const LogInfo& info) {
   std::string out;
   for (const auto& text : info.dialect) out += text + "\n";
   for (const auto& text : info.guesses) out += text + "\n";
-  for (const Warning& w : info.warnings.list()) out += w.code + ": " + w.message + "\n";
+  for (const Warning& w : info.warnings.list()) out += w.code + ": " + w.sentence + "\n";
   return out;
 }
 
@@ -665,11 +665,11 @@ std::vector<Export> bench_exports() {
        "t,clock_ms,gx\n" +
            lines(12,
                  [](int k) { return fmt::format("{},{},{}\n", 24 + (k % 3) * 0.1, 10 * k, k); }),
-       "t[] clock[ms] gx[]",
+       "t[] gx[]",
+       100,
        0,
-       kNoStart,
-       {24, 0, 0},
-       "",
+       {24, 0},
+       "time column: clock",
        false,
        nullptr});
   out.push_back(

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "libchar/core/error.hpp"
@@ -32,8 +33,8 @@ std::vector<double> gaussian(std::size_t n, double sd, double mean = 0) {
 }
 
 bool suggests(const ChannelQuality& q, const char* what) {
-  for (const std::string& s : q.suggestions)
-    if (s.find(what) != std::string::npos) return true;
+  for (const Finding& s : q.findings)
+    if (s.sentence.find(what) != std::string::npos) return true;
   return false;
 }
 
@@ -187,7 +188,7 @@ TEST_CASE("the result does not depend on how the samples are pushed") {
     CHECK(q.at_minimum == whole.at_minimum);
     CHECK(q.at_maximum == whole.at_maximum);
     CHECK(q.repeats == whole.repeats);
-    CHECK(q.suggestions == whole.suggestions);
+    CHECK(q.findings == whole.findings);
   }
 }
 
@@ -337,4 +338,62 @@ TEST_CASE("quality: parts joined are the record, wherever it is cut") {
         REQUIRE(b.counter == a.counter);
         REQUIRE(b.float32 == a.float32);
       }
+}
+
+TEST_CASE("a value that stands often and far from all others is a mark for missing values") {
+  std::vector<double> x = gaussian(20000, 1);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::round(x[i] * 1000) / 1000 + 15;
+  CHECK(meter(x).signs.marks.empty());
+  std::vector<double> marked = x;
+  for (std::size_t i = 500; i < marked.size(); i += 400) marked[i] = -999;
+  const ChannelQuality q = meter(marked);
+  REQUIRE(q.signs.marks == std::vector<double>{-999});
+  REQUIRE(has(q.findings, "missing_mark"));
+  CHECK(q.findings[0].help[0].options[0] == Finding::Setting{"missing", "-999"});
+  CHECK_FALSE(has(q.findings, "saturated"));
+  for (std::size_t i = 700; i < marked.size(); i += 900) marked[i] = 65535;
+  CHECK(meter(marked).signs.marks == std::vector<double>{-999, 65535});
+  // One wild value, a step and a clipped signal are none.
+  std::vector<double> wild = x;
+  wild[7000] = 4000;
+  CHECK(meter(wild).signs.marks.empty());
+  std::vector<double> clipped = x;
+  for (double& v : clipped) v = std::min(v, 15.5);
+  CHECK(meter(clipped).signs.marks.empty());
+}
+
+TEST_CASE("a sawtooth wraps, with the period of its jumps; noise does not") {
+  CHECK(meter(gaussian(20000, 1)).signs.wraps == 0);
+  std::vector<double> phase = gaussian(20000, 1);
+  double turns = 0;
+  for (std::size_t i = 0; i < phase.size(); ++i) {
+    const double at = 0.3e-9 * static_cast<double>(i) + 2e-10 * phase[i];
+    turns = std::floor(at / 1e-7);
+    phase[i] = at - turns * 1e-7;
+  }
+  const ChannelQuality q = meter(phase);
+  CHECK(q.signs.wraps >= 59);
+  CHECK(q.signs.period == Approx(1e-7).epsilon(1e-9));
+  REQUIRE(has(q.findings, "phase_wraps"));
+  QualityMeter first, second;  // in two parts
+  first.push(std::span(phase).first(7777));
+  second.push(std::span(phase).subspan(7777));
+  first.join(second);
+  CHECK(first.finish().signs.wraps == q.signs.wraps);
+}
+
+TEST_CASE(
+    "a dead band is named, with its value and share; coarse rounding and held values are none") {
+  std::vector<double> x = gaussian(50000, 1);
+  for (double& v : x) v = std::fabs(v) < 1.5 ? 0.0 : v;
+  const ChannelQuality q = meter(x);
+  REQUIRE(has(q.findings, "dead_band"));
+  CHECK(q.signs.resting_value == 0);
+  CHECK(static_cast<double>(q.signs.at_rest) == Approx(0.866 * 50000).epsilon(0.02));
+  std::vector<double> held = gaussian(50000, 1);
+  for (std::size_t i = 0; i < held.size(); ++i) held[i] = held[i - i % 10];
+  CHECK_FALSE(has(meter(held).findings, "dead_band"));
+  std::vector<double> coarse = gaussian(50000, 1);
+  for (double& v : coarse) v = std::round(v);
+  CHECK_FALSE(has(meter(coarse).findings, "dead_band"));
 }

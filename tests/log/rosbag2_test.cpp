@@ -107,7 +107,7 @@ TEST_CASE("rosbag2: topics of the parts are merged by name and type") {
   const Warning* const lost = odd.warnings.find("unreadable_part");
   REQUIRE(lost != nullptr);
   CHECK(lost->count == 20);
-  CHECK(lost->places.front() == "humble.db3: the log has no definition of this type");
+  CHECK(lost->where.rows.front() == "humble.db3: the log has no definition of this type");
 }
 
 TEST_CASE("rosbag2: a part that is not there, is cut or is packed is named") {
@@ -122,7 +122,7 @@ TEST_CASE("rosbag2: a part that is not there, is cut or is packed is named") {
   const test::Rows cut =
       test::read_rows("rosbag2", folder / "metadata.yaml", test::of_topic("/imu0/data"), true);
   REQUIRE(cut.warnings.find("cut_end") != nullptr);
-  CHECK_THAT(cut.warnings.find("cut_end")->places.front(), Catch::StartsWith("a_1.mcap, "));
+  CHECK_THAT(cut.warnings.find("cut_end")->where.rows.front(), Catch::StartsWith("a_1.mcap, "));
   CHECK(cut.time_ns.size() > 20);
   write(folder / "a_1.db3.zstd", "x");
   write_metadata(folder, {"a_0.mcap", "a_1.db3.zstd"});

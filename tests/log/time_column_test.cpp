@@ -1,11 +1,17 @@
 // Which column is the time, and in which unit: the same table gives the same answer whatever format holds it.
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
+#include <functional>
+#include <random>
 
 #include "libchar/core/error.hpp"
+#include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/read.hpp"
+#include "tests/log/log_text.hpp"
 #include "tests/support/rows.hpp"
 #include "tests/support/shared.hpp"
 
@@ -260,4 +266,153 @@ TEST_CASE("a unit that a sidecar states wins over the one in the name") {
       << R"({"dtype": "u8", "channels": [{"name": "time_us", "unit": "ms"}, {"name": "x"}]})";
   const Found expected{true, "ms", false, 200, 1};
   CHECK(found((folder / "x.bin").string(), {}) == expected);
+}
+
+namespace {
+
+/// Of a log of two columns, the stamps being those of `of_row`.
+Recording with_stamps(const std::string& header,
+                      const std::function<std::string(int)>& of_row,
+                      const ReadOptions& options = {}) {
+  std::mt19937_64 random(3);
+  std::string text = header + ",x\n";
+  for (int i = 0; i < 300; ++i)
+    text += of_row(i) + "," + std::to_string(static_cast<double>(random() % 1000)) + "\n";
+  return test::read_text(text, options);
+}
+
+}  // namespace
+
+TEST_CASE("a steady clock is the time, whatever its name") {
+  struct Named {
+    const char* header;
+    double step, rate_hz;
+  };
+  for (const Named& named : {Named{"ms", 10, 100},
+                             Named{"us", 10000, 100},
+                             Named{"millis()", 10, 100},
+                             Named{"micros()", 10000, 100},
+                             Named{"TOW", 0.1, 10},
+                             Named{"UTC", 0.02, 50},
+                             Named{"IMUTime", 0.005, 200},
+                             Named{"MasterTime", 0.005, 200},
+                             Named{"sensor_ts", 10000000, 100},
+                             Named{"Tick", 10, 100},
+                             Named{"loggingTime", 0.01, 100},
+                             Named{"\xE6\x97\xB6\xE9\x97\xB4", 0.01, 100},
+                             Named{"Laufzeit", 0.01, 100},
+                             Named{"ts", 0.01, 100},
+                             Named{"frame_clock", 10000, 100}}) {
+    INFO(named.header);
+    const Recording r =
+        with_stamps(named.header, [&](int i) { return fmt::format("{}", 1000 + named.step * i); });
+    CHECK(r.info.time.column == name_and_unit(named.header).first);
+    CHECK(r.info.time.rate_hz == Approx(named.rate_hz));
+  }
+}
+
+TEST_CASE("a temperature that rises and a row counter are no time") {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 0.05);
+  CHECK(with_stamps("T", [&](int i) {
+          return fmt::format("{:.3f}", 20 + 0.01 * i + noise(random));
+        }).info.time.column.empty());
+  CHECK(with_stamps("T", [&](int i) {
+          return fmt::format("{:.2f}", 20 + 0.001 * i);
+        }).info.time.column.empty());
+  CHECK(with_stamps("temperature", [&](int i) {
+          return fmt::format("{:.2f}", 20 + 0.01 * i);
+        }).info.time.column.empty());
+  CHECK(with_stamps("sample", [](int i) { return std::to_string(i); }).info.time.column.empty());
+  ReadOptions rate;
+  rate.rate_hz = 100;  // who knows the rate looks for no clock
+  CHECK(with_stamps(
+            "angle", [](int i) { return fmt::format("{}", 0.5 * i); }, rate)
+            .info.time.column.empty());
+}
+
+TEST_CASE("a device's clock of whole seconds gives way to a steady host clock") {
+  const Recording r = with_stamps("device_time[s],host_time[s]", [](int i) {
+    return fmt::format("{},{:.3f}", (i * 10 + 3) / 10, 100 + i * 1.0003);
+  });
+  CHECK(r.info.time.column == "device_time");  // as good: one row a second
+  const Recording s = with_stamps("device_time[s],host_time[s]", [](int i) {
+    return fmt::format("{},{:.3f}", i * 7 / 20, 100 + i * 0.35);
+  });
+  CHECK(s.info.time.column == "host_time");
+  CHECK_THAT(s.info.guesses.front(), Catch::Contains("steadier than device_time"));
+}
+
+TEST_CASE("counts of days are read to the millisecond, as a guess") {
+  struct Days {
+    const char* header;
+    double first;
+    std::int64_t start_s;
+  };
+  for (const Days& days : {Days{"time", 45292, 1704067200},
+                           Days{"MJD", 60310, 1704067200},
+                           Days{"time", 739252, 1704067200},
+                           Days{"time", 2460310.5, 1704067200}}) {
+    for (const double step_s : {0.01, 1.0, 10.0, 60.0}) {
+      INFO(days.header << " " << days.first << " " << step_s);
+      const Recording r = with_stamps(days.header, [&](int i) {
+        return fmt::format("{:.12f}", days.first + 0.25 + i * step_s / 86400);
+      });
+      CHECK(r.info.time.unit == "d");
+      CHECK(r.info.time.unit_guessed);
+      CHECK(r.info.time.rate_hz == Approx(1 / step_s).epsilon(1e-3));
+      CHECK(static_cast<double>(*r.info.time.start_ns) * 1e-9 ==
+            Approx(static_cast<double>(days.start_s + 21600)).margin(0.001));
+    }
+  }
+  const Recording pair = with_stamps(
+      "MJD,sod", [](int i) { return fmt::format("{},{}", 60310 + i / 200, i % 200 * 432); });
+  CHECK(pair.info.time.rate_hz == Approx(1.0 / 432));
+  ReadOptions hours;
+  for (const auto& [unit, rate] :
+       {std::pair{"min", 1.0 / 60}, {"h", 1.0 / 3600}, {"d", 1.0 / 86400}}) {
+    hours.time_unit = unit;
+    CHECK(with_stamps(
+              "t", [](int i) { return std::to_string(i); }, hours)
+              .info.time.rate_hz == Approx(rate));
+  }
+}
+
+TEST_CASE("minutes and seconds of an hour go on behind it") {
+  const Recording r = with_stamps("t", [](int i) {
+    const int tenths = 35900 + i;
+    return fmt::format("{:02}:{:02}.{}", tenths / 600 % 60, tenths / 10 % 60, tenths % 10);
+  });
+  CHECK(r.info.time.rate_hz == Approx(10));
+  CHECK(r.info.samples == 300);
+}
+
+TEST_CASE("which number of a date is the day follows from the whole head") {
+  for (const bool day_first : {true, false}) {
+    const Recording r = with_stamps("date", [&](int i) {
+      const int hour = i % 24, day = 1 + i / 24;
+      return day_first ? fmt::format("{:02}/05/24 {:02}:00", day, hour)
+                       : fmt::format("05/{:02}/24 {:02}:00", day, hour);
+    });
+    CHECK(r.info.samples == 300);
+    CHECK(r.info.time.gaps == 0);
+  }
+}
+
+TEST_CASE("a preamble says how long a count of the stamps is") {
+  std::string text = "GYROFLOW IMU LOG\nversion,1.3\ntscale,0.002\nt,gx,gy\n";
+  for (int i = 0; i < 300; ++i) text += fmt::format("{},{},{}\n", i, i % 7, i % 5);
+  const Recording r = test::read_text(text);
+  CHECK(r.info.time.rate_hz == Approx(500));
+}
+
+TEST_CASE("parts of a second without leading zeros") {
+  for (const int per_second : {1000000000, 1000000}) {
+    const Recording r = with_stamps("t[s]", [&](int i) {
+      const std::int64_t part = static_cast<std::int64_t>(i % 100) * (per_second / 100);
+      return fmt::format("{}.{}", 1700000000 + i / 100, part);
+    });
+    CHECK(r.info.time.rate_hz == Approx(100));
+    CHECK(r.info.samples == 300);
+  }
 }

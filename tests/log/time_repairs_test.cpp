@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "libchar/log/time/stamp_model.hpp"
+
 using namespace libchar;
 
 TEST_CASE("of a gap, what lies in the window counts") {
@@ -17,22 +19,6 @@ TEST_CASE("of a gap, what lies in the window counts") {
   CHECK(stretch(0, 130) == std::vector<std::int64_t>{1, 2, 2});
   CHECK(stretch(0, 131) == std::vector<std::int64_t>{1, 3, 3});
   CHECK(stretch(500, INT64_MAX)[2] == 0);
-}
-
-TEST_CASE("a step back is a rollover only at the end of a counter's range") {
-  const std::int64_t us = 1000, range = 65536 * us;
-  const auto short_counter = find_rollover(range - 5 * us, 5 * us, us, 10.0 * us);
-  REQUIRE(short_counter);
-  CHECK(short_counter->bits == 16);
-  CHECK(short_counter->range_ns == range);
-  const std::int64_t long_range = range * 65536;
-  const auto long_counter = find_rollover(long_range - 5 * us, 5 * us, us, 10.0 * us);
-  REQUIRE(long_counter);
-  CHECK(long_counter->bits == 32);
-  CHECK(long_counter->range_ns == long_range);
-  CHECK_FALSE(find_rollover(range / 2, 5 * us, us, 10.0 * us));
-  CHECK_FALSE(find_rollover(range - 5 * us, -5 * us, us, 10.0 * us));
-  CHECK_FALSE(find_rollover(range - 5 * us, 5 * us, us, 1.0));  // more than 1000 steps
 }
 
 TEST_CASE("a row that is late alone is no gap, rows that are late together are") {

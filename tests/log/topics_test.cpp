@@ -71,10 +71,10 @@ struct MemoryReader final : TopicReader {
   void select(std::size_t,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time_field,
-              std::int64_t unit_ns) override {
+              StampUnit wanted_unit) override {
     wanted = fields;
     time = time_field;
-    unit = unit_ns;
+    unit = wanted_unit.ns;
   }
   bool next(RowBlock& block, std::size_t most, Warnings&) override {
     for (; at < rows.size() && block.rows < most; ++at, ++block.rows) {
@@ -196,7 +196,7 @@ TEST_CASE("rows of a topic: its stamps, in blocks of any size, with what is no s
   CHECK(log.columns[0][0] == 1);
   CHECK(std::isnan(log.columns[0][1]));
   CHECK(std::isnan(log.columns[0][2]));
-  CHECK(log.warnings.find("missing_cell")->places[0] == "row 1 of /pose, field x");
+  CHECK(log.warnings.find("missing_cell")->where.rows[0] == "row 1 of /pose, field x");
   CHECK(log.warnings.find("infinite_value")->count == 1);
   CHECK(log.rows->info().time.column == "header.stamp");
   CHECK(log.rows->info().topic == "/pose");

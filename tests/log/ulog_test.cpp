@@ -136,7 +136,7 @@ TEST_CASE("ULog: instances, nested messages, arrays, padding and every type by v
   const Warning* dropout = imu.info.warnings.find("dropout");
   REQUIRE(dropout != nullptr);
   CHECK(dropout->count == 2);
-  CHECK(dropout->message.find("23 ms in all") != std::string::npos);
+  CHECK(dropout->sentence.find("23 ms in all") != std::string::npos);
 
   const Recording esc = read_recording(flight("instances.ulg"),
                                        of_topic("esc_status", {"esc[0].pair[0]", "esc[1].rpm"}));
@@ -230,7 +230,7 @@ TEST_CASE("ULog: every cut of one message says how many bytes were left out") {
     CHECK(cut.info.rows == all.info.rows - 1);
     const Warning* said = cut.info.warnings.find("cut_message");
     REQUIRE(said != nullptr);
-    CHECK(said->message.find(fmt::format("its last {} bytes", 49 - less)) != std::string::npos);
+    CHECK(said->sentence.find(fmt::format("its last {} bytes", 49 - less)) != std::string::npos);
   }
 }
 

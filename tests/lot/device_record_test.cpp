@@ -57,7 +57,7 @@ Characterization recording() {
   ChannelResult none;
   none.quality.mean = std::numeric_limits<double>::quiet_NaN();
   none.channel = {"x\"\n\x01", ""};
-  none.problems = {"it is constant", "µ"};
+  none.findings = {finding("constant", "it is constant"), finding("spiky", "µ")};
   out.channels.push_back(none);
   return out;
 }
@@ -243,7 +243,7 @@ TEST_CASE("logs side by side are devices, called as their files are, each once")
   CHECK_THROWS_WITH(records_of(logs), Contains("E0762") && Contains("same recording"));
   for (std::size_t i = 0; i < 3; ++i) logs[i].log.sha256 = std::to_string(i);
   for (ChannelResult& c : logs[2].channels) c.fit.reset();
-  logs[2].channels[0].problems = {"it is constant"};
+  logs[2].channels[0].findings = {finding("constant", "it is constant")};
   const auto records = records_of(logs);
   REQUIRE(records.size() == 3);
   CHECK(records[0].device == "lot/imu7.csv");

@@ -18,7 +18,7 @@ namespace {
 
 SensorModel model_of(const Characterization& result, std::size_t i) {
   const ChannelResult& c = result.channels[i];
-  return sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan);
+  return sensor_model_from(c, result.log);
 }
 
 }  // namespace
@@ -36,7 +36,8 @@ TEST_CASE("model from a fit: everything a simulation needs, and where it came fr
   CHECK(m.tau_min_s == 0.005);
   CHECK(m.tau_max_s == Approx(163.84));  // the last point with 5 degrees of freedom
   CHECK(m.recording_sha256 == result.log.sha256);
-  CHECK(m.remarks.size() == 2);
+  CHECK(m.remarks.size() == 1);
+  CHECK_FALSE(m.findings.empty());
   CHECK(!model_of(result, 0).saturation_low);  // never reached
 }
 
@@ -101,7 +102,8 @@ TEST_CASE("model file: hostile text stays text") {
     CHECK(file["channel"].as<std::string>() == (whole ? name : "bad\\xFF\x01utf8"));
     CHECK(file["version"].as<int>() == 1);
     CHECK(file["random_walk"]["unit"].IsScalar());
-    CHECK(file["remarks"].size() == 2);
+    CHECK(file["remarks"].size() == 1);
+    CHECK(file["findings"].IsSequence());
   }
   auto quoted = test::synthetic_imu();
   quoted.channels[0].channel.name = "a \"b\" \\ c: #d";

@@ -43,7 +43,7 @@ double white_of(const std::string& unit, const std::string& density, double valu
 TEST_CASE("model reader: what the writer wrote reads back to the same file") {
   const auto result = test::synthetic_imu();
   for (const ChannelResult& c : result.channels) {
-    SensorModel m = sensor_model_from(c.channel, result.log, c.quality, *c.fit, c.allan);
+    SensorModel m = sensor_model_from(c, result.log);
     m.scale_factor = {1.02, 0.01, 1e-4, 2e-6};
     m.nonlinearity = {0.01, 0.003, -0.02, -0.001};
     m.bias = {0.05, 0.2, 1e-3, -2e-5};

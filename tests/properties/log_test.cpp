@@ -204,6 +204,6 @@ TEST_CASE("property: the quality of a channel does not depend on the pieces of i
                         {b.mean, b.standard_deviation, b.difference_kurtosis, b.minimum}));
     RC_ASSERT(a.longest_stuck == b.longest_stuck);
     RC_ASSERT(a.distinct_values == b.distinct_values);
-    RC_ASSERT(a.suggestions == b.suggestions);
+    RC_ASSERT(a.findings == b.findings);
   });
 }

@@ -273,7 +273,7 @@ TEST_CASE("fuse: a sensor that the log does not have") {
   Kept kept;
   const FuseResult fused = bench.fuse_log(kept, by("least-squares"), "less.csv");
   REQUIRE(fused.warnings.find("sensor_not_in_log") != nullptr);
-  CHECK(fused.warnings.find("sensor_not_in_log")->places == std::vector<std::string>{"c"});
+  CHECK(fused.warnings.find("sensor_not_in_log")->where.rows == std::vector<std::string>{"c"});
   CHECK(fused.sensors[2].missing == 4000);
   CHECK(fused.estimates == 4000);
   CHECK_THAT(bench.refusal(by("perceptron"), "less.csv"),
@@ -379,7 +379,7 @@ TEST_CASE("fuse: a sensor that is noisier than where it was learnt is named") {
     Kept kept;
     const FuseResult fused = bench.fuse_log(kept, by("least-squares"), "new.csv");
     const Warning* warning = fused.warnings.find(code);
-    return warning == nullptr ? "" : warning->places[0];
+    return warning == nullptr ? "" : warning->where.rows[0];
   };
   CHECK(warned({.rows = 8000, .seed = 21}, "noise_changed").empty());
   CHECK_THAT(warned({.rows = 8000, .noisy = 4, .seed = 22}, "noise_changed"),
@@ -412,10 +412,10 @@ TEST_CASE("fuse: no sensor of the same noise is called noisier in 200 logs") {
     warn_of_noise(names, learnt, noise(4000, 2), other);
     alarms += same.empty() ? 0 : 1;
     const Warning* warning = other.find("noise_changed");
-    found +=
-        warning != nullptr && warning->places.size() == 1 && warning->places[0].starts_with("a is")
-            ? 1
-            : 0;
+    found += warning != nullptr && warning->where.rows.size() == 1 &&
+                     warning->where.rows[0].starts_with("a is")
+                 ? 1
+                 : 0;
   }
   CHECK(alarms == 0);
   CHECK(found >= 195);

@@ -394,7 +394,7 @@ TEST_CASE("replay: a sensor that dies at once is left out of everything, with a 
             }));
   const ReplayResult dead = replay(bench.read(kFive + more));
   REQUIRE(dead.warnings.find("sensor_without_samples") != nullptr);
-  CHECK(dead.warnings.find("sensor_without_samples")->places == std::vector<std::string>{"c"});
+  CHECK(dead.warnings.find("sensor_without_samples")->where.rows == std::vector<std::string>{"c"});
   // What the others give is what they give without it, bit for bit.
   bench.put("four.csv", five_sensors(4000, [](int, int) { return std::string("keep"); }));
   const ReplayResult four = replay(
@@ -425,10 +425,10 @@ TEST_CASE("replay: a sensor that repeats another one is named") {
       bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, {name: again, "
                  "channel: a}, d]\nreference: x\nalgorithms: [mean, optimal-weights]\n"));
   REQUIRE(twice.warnings.find("copied_sensor") != nullptr);
-  CHECK(twice.warnings.find("copied_sensor")->places ==
+  CHECK(twice.warnings.find("copied_sensor")->where.rows ==
         std::vector<std::string>{"again repeats a"});
-  CHECK(twice.sensors[2].copy_of == std::size_t{0});
-  CHECK_FALSE(twice.sensors[3].copy_of.has_value());
+  CHECK(twice.sensors[2].copy_of == "a");
+  CHECK(twice.sensors[3].copy_of.empty());
   const std::vector<double> w = named(twice, "optimal-weights").weights.at(0);
   CHECK(w[0] == w[2]);
   for (const double one : w) CHECK(std::abs(one) < 1);

@@ -59,7 +59,7 @@ TEST_CASE("replay view: marks are clipped to the run, and name what they mark") 
   CHECK(view.run.marks[1].kind == "warm-up");
   CHECK(view.run.marks[1].to_s == 22);
   CHECK(view.run.marks[2].label == "gyr_1: scale 0.85");
-  CHECK(view.run.marks[2].sensor == 1);
+  CHECK(view.run.marks[2].sensor == "gyr_1");
   CHECK(view.run.marks[2].from_s == 20);
   CHECK(view.run.marks[3].label == "gyr_2: stuck");
   CHECK(view.run.marks[3].to_s == 80);

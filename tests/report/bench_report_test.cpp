@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/report/compare/bench_against.hpp"
 #include "libchar/report/compare/bench_report_files.hpp"
@@ -42,6 +43,10 @@ BenchReport made_report() {
   return out;
 }
 
+BenchReport read_back(const BenchReport& report) {
+  return parse_bench_report(dump_json(document_of(bench_fields(), report)), "bench.json");
+}
+
 }  // namespace
 
 TEST_CASE("bench: page, Markdown, text and document say the same, names escaped") {
@@ -51,20 +56,20 @@ TEST_CASE("bench: page, Markdown, text and document say the same, names escaped"
   CHECK_THAT(page, Contains("<svg") && Contains("second"));
   CHECK_THAT(bench_markdown(report), Contains("| first | 1.00 \\[0.900, 1.10\\] |"));
   CHECK_THAT(bench_text(report), Contains("first") && Contains("1.00 [0.900, 1.10]"));
-  const Json document = bench_json(report);
+  const Json document = document_of(bench_fields(), report);
   CHECK(document["format"] == "bench");
   CHECK(document["characterization"][0]["methods"][1]["terms"][0]["rmse_over_bound"]["value"] == 3);
 }
 
 TEST_CASE("bench against: worse beyond both intervals is found, the rest is not") {
-  const Json was = bench_json(made_report());
+  const BenchReport was = read_back(made_report());
   BenchReport report = made_report();
-  CHECK(bench_changes(was, bench_json(report), "old").worse(0.05).empty());
+  CHECK(bench_changes(was, report, "old").worse(0.05).empty());
   // Within the intervals: nothing. Beyond them: said.
   report.characterization[0].methods[0] = made_method("first", 1.1, 50);
-  CHECK(bench_changes(was, bench_json(report), "old").worse(0.05).empty());
+  CHECK(bench_changes(was, report, "old").worse(0.05).empty());
   report.characterization[0].methods[0] = made_method("first", 1.5, 50);
-  const BenchChanges worse = bench_changes(was, bench_json(report), "old");
+  const BenchChanges worse = bench_changes(was, report, "old");
   REQUIRE(worse.worse(0.05).size() == 1);
   CHECK_THAT(worse.worse(0.05)[0].what, Contains("first") && Contains("RMSE"));
   CHECK(worse.worse(0.6).empty());
@@ -72,21 +77,20 @@ TEST_CASE("bench against: worse beyond both intervals is found, the rest is not"
 }
 
 TEST_CASE("bench against: times judge on the same machine only, and by three tolerances") {
-  const Json was = bench_json(made_report());
+  const BenchReport was = read_back(made_report());
   BenchReport report = made_report();
   report.characterization[0].methods[1] = made_method("second", 3, 5.6);
-  CHECK(bench_changes(was, bench_json(report), "old").worse(0.05).empty());
+  CHECK(bench_changes(was, report, "old").worse(0.05).empty());
   report.characterization[0].methods[1] = made_method("second", 3, 6);
-  CHECK(bench_changes(was, bench_json(report), "old").worse(0.05).size() == 1);
+  CHECK(bench_changes(was, report, "old").worse(0.05).size() == 1);
   report.machine.processor = "another";
-  CHECK(bench_changes(was, bench_json(report), "old").worse(0.05).empty());
+  CHECK(bench_changes(was, report, "old").worse(0.05).empty());
 }
 
 TEST_CASE("bench against: another document is refused") {
-  const Json now = bench_json(made_report());
-  CHECK_THROWS_WITH(bench_changes({{"format", "replay-report"}}, now, "old.json"),
+  CHECK_THROWS_WITH(parse_bench_report(R"({"format": "replay-report"})", "old.json"),
                     Contains("E0968") && Contains("old.json"));
   BenchReport other = made_report();
   other.characterization[0].signal.name = "other";
-  CHECK_THROWS_WITH(bench_changes(bench_json(other), now, "old.json"), Contains("E0968"));
+  CHECK_THROWS_WITH(bench_changes(other, made_report(), "old.json"), Contains("E0968"));
 }

@@ -31,7 +31,7 @@ TEST_CASE("an inspection in text: how it was read, guesses, repairs, a line a ch
   inspection.quality[0].maximum = 1;
   inspection.quality[0].standard_deviation = 0.5;
   inspection.quality[0].missing = 3;
-  inspection.quality[1].suggestions = {"is it connected?"};
+  inspection.quality[1].findings = {finding("no_value", "is it connected?")};
   const std::string text = inspection_text(inspection);
   CHECK_THAT(text, Contains("  read as csv: delimiter ;; decimal comma\n"));
   CHECK_THAT(text, Contains("  guessed: time unit: us\n"));
@@ -42,15 +42,16 @@ TEST_CASE("an inspection in text: how it was read, guesses, repairs, a line a ch
   CHECK_THAT(text, Contains("  still: is it connected?\n"));
 }
 
-TEST_CASE("one line a kind of remark: the channels together, their numbers as ranges") {
+TEST_CASE("one line for each kind of finding: what the first channel says, and which are alike") {
   Inspection inspection;
   inspection.info.file = "log.csv";
   inspection.info.channels = {{"gx", "deg/s", false}, {"gy", "deg/s", false}, {"n", "1", false}};
   inspection.quality.resize(3);
-  inspection.quality[0].suggestions = {"kurtosis 12.5 (3 for noise)"};
-  inspection.quality[1].suggestions = {"kurtosis 1e3 (3 for noise)", "is it connected?"};
+  inspection.quality[0].findings = {finding("spiky", "kurtosis 12.5 (3 for noise)")};
+  inspection.quality[1].findings = {finding("spiky", "kurtosis 1e3 (3 for noise)"),
+                                    finding("no_value", "is it connected?")};
   const std::string text = inspection_text(inspection);
-  CHECK_THAT(text, Contains("  gx, gy: kurtosis 12.5…1e3 (3 for noise)\n"));
+  CHECK_THAT(text, Contains("  gx: kurtosis 12.5 (3 for noise) (alike: gy)\n"));
   CHECK_THAT(text, Contains("  gy: is it connected?\n"));
   CHECK_THAT(squeezed(text), Contains("n 0 "));  // the unit of numbers without one is not printed
 }

@@ -29,8 +29,7 @@ int main(int argc, char** argv) {
     libchar::write_whole_file(folder + "/curves.csv", libchar::csv_curves(result), true);
     if (const auto& c = result.channels[0]; c.fit) {
       libchar::write_whole_file(folder + "/model.sensor.yaml",
-                                libchar::model_yaml(libchar::sensor_model_from(
-                                    c.channel, result.log, c.quality, *c.fit, c.allan)),
+                                libchar::model_yaml(libchar::sensor_model_from(c, result.log)),
                                 true);
     }
   } catch (const std::exception& error) {

@@ -65,7 +65,7 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
                           "command",
                           "config",
                           "input",
-                          "warnings",
+                          "findings",
                           "recording",
                           "allan",
                           "spectrum",
@@ -74,8 +74,8 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
     CHECK(report.contains(key));
   CHECK(report["input"][0]["sha256"] == result.log.sha256);
   CHECK(report["input"][0]["bytes"] == result.log.bytes);
-  CHECK(report["warnings"][0]["code"] == "gap");
-  CHECK(report["warnings"][0]["count"] == 37);
+  CHECK(report["findings"][0]["code"] == "gap");
+  CHECK(report["findings"][0]["count"] == 37);
   CHECK(report["recording"]["repairs"]["duplicate_timestamp"] == 1);
 
   const Json& allan = report["allan"];
@@ -128,7 +128,7 @@ TEST_CASE("report.json: null stands only where a status says why") {
   const Json& unfitted = report["fit"]["channels"][0];
   CHECK(unfitted["white_noise"]["value"].is_null());
   CHECK(unfitted["white_noise"]["status"] == "not_fitted");
-  CHECK(report["quality"]["channels"][0]["problems"].size() == 1);
+  CHECK(!report["summary"]["channels"][0]["findings"].empty());
   CHECK(report["allan"]["channels"][0]["tau_s"].empty());
   CHECK(report["allan"]["channels"][1]["ci95"][0].is_null());
 }
@@ -253,5 +253,5 @@ TEST_CASE("inspect and the report describe a recording by the same keys and valu
 
 TEST_CASE("warnings of the report name their file") {
   const Json report = json_report(test::synthetic_imu());
-  CHECK(report["warnings"][0]["file"] == report["input"][0]["path"]);
+  CHECK(report["findings"][0]["file"] == report["input"][0]["path"]);
 }

@@ -206,15 +206,16 @@ Characterization synthetic_imu() {
                                "212 samples replaced by the mean of their neighbours",
                                212});
   bad.fit->term[1].status = Status::undetermined;
-  bad.fit->sentences = {
-      "The record cannot tell bias instability from random walk: record 4 × as long."};
+  bad.fit->findings = {
+      finding("lowest_left_out",
+              "The record cannot tell bias instability from random walk: record 4 × as long.")};
   bad.fit->bandwidth_hz = 62.0;
   bad.fit->bandwidth_ci95 = Interval{60.5, 63.6};
   bad.lines = {{50.0, 2.1e-3, 340, 0.02}, {100.0, 4e-4, 21, 0.02}};
   bad.quality.saturated = 14;
   bad.quality.missing = 37;
   bad.quality.difference_kurtosis = 29.8;
-  bad.quality.suggestions = {"14 samples stand at 19.6133: widen the range"};
+  bad.quality.findings = {finding("saturated", "14 samples stand at 19.6133: widen the range")};
   for (ChannelResult& c : result.channels) c.quality.missing = 37;
   result.settings = {
       part_entry("allan", {{"type", "oadev"}, {"grid", "octave"}}),
@@ -252,9 +253,10 @@ Characterization hostile() {
     c.channel.name = name;
     c.channel.unit = c.trace_unit = name;
     c.fit->method = c.fit->second_opinion->sentence = name;
-    c.fit->sentences = {name};
+    c.fit->findings = {finding("heavy_tails", name)};
     c.fit->remedies = {{name, name, name, 1}};
-    c.quality.suggestions = c.problems = c.allan.notes = c.spectrum.notes = {name};
+    c.quality.findings = c.findings = {finding("spiky", name)};
+    c.allan.notes = c.spectrum.notes = {name};
     result.channels.push_back(std::move(c));
     result.log.warnings.add(name, name, name);
     result.log.guesses.push_back(name);
@@ -282,7 +284,7 @@ Characterization barely_anything() {
   result.channels.resize(2);
   for (ChannelResult& c : result.channels) {
     c.fit.reset();
-    c.problems = {"5 samples are too few for a fit"};
+    c.findings = {finding("no_fit", "5 samples are too few for a fit")};
   }
   result.channels[0].allan.points.clear();
   result.channels[0].spectrum = {};

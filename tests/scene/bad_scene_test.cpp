@@ -193,7 +193,7 @@ TEST_CASE("bad scenes: YAML") {
   CHECK(bench.read(yaml_cases().at("008_norway").text).name == "no");
   const Scene ansi = bench.read(yaml_cases().at("029_ansi").text);
   CHECK(ansi.name == "\x1B]0;x\a");
-  CHECK_THAT(ansi.warnings.find("control_characters")->places.at(0), Contains("s.yaml:3:7"));
+  CHECK_THAT(ansi.warnings.find("control_characters")->where.rows.at(0), Contains("s.yaml:3:7"));
 }
 
 TEST_CASE("bad scenes: JSON") {
@@ -252,7 +252,7 @@ TEST_CASE("bad scenes: names of sensors and outputs") {
   const Scene clash = bench.read(kHead +
                                  "recording: log.csv\nsensors: [{name: R, channel: a}, "
                                  "{name: r, channel: b}]\n");
-  CHECK_THAT(clash.warnings.find("case_clash")->places.at(0), Contains("s.yaml:4:41"));
+  CHECK_THAT(clash.warnings.find("case_clash")->where.rows.at(0), Contains("s.yaml:4:41"));
   const std::string html = bench.path("r.html");
   CHECK_THROWS_WITH(refuse_scene_outputs(clash, {html, html}), Contains("E0746"));
   CHECK_THROWS_WITH(refuse_scene_outputs(clash, {bench.path("log.csv")}), Contains("E0504"));

@@ -13,6 +13,8 @@
 
 #include "arrays.hpp"
 #include "libchar/characterize/curves/log_spectra.hpp"
+#include "libchar/characterize/judgement.hpp"
+#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/fit/fit_json.hpp"
@@ -122,7 +124,8 @@ ReadOptions reading_of(const py::dict& options) {
   given.read("header", reading.header);
   given.read("encoding", reading.encoding);
   given.read("skip_rows", reading.skip_rows);
-  given.read("overflow_as_missing", reading.overflow_as_missing);
+  given.read("missing", reading.missing.marks);
+  given.read("overflow_as_missing", reading.missing.overflow);
   given.read("skip_repeated_header", reading.skip_repeated_header);
   given.read("topic", reading.topic);
   given.read("time_source", reading.time_source);
@@ -281,9 +284,14 @@ class Characterized {
       if (c.fit) channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, *c.fit));
     return to_python(with_valid_text(noise_fit_document(std::move(channels))));
   }
-  std::vector<std::pair<std::string, std::vector<std::string>>> problems() const {
-    std::vector<std::pair<std::string, std::vector<std::string>>> out;
-    for (const ChannelResult& c : result_.channels) out.emplace_back(c.channel.name, c.problems);
+  std::vector<std::pair<std::string, py::object>> findings() const {
+    std::vector<std::pair<std::string, py::object>> out;
+    for (const ChannelResult& c : result_.channels) {
+      Json list = Json::array();
+      for (const Finding& one : judge(c).findings)
+        list.push_back(document_of(finding_fields(), one));
+      out.emplace_back(c.channel.name, to_python(with_valid_text(list)));
+    }
     return out;
   }
   std::vector<std::string> models() const {
@@ -493,7 +501,7 @@ PYBIND11_MODULE(_libchar, module) {
       .def("document", &Characterized::document)
       .def("allan", &Characterized::allan)
       .def("fits", &Characterized::fits)
-      .def("problems", &Characterized::problems)
+      .def("findings", &Characterized::findings)
       .def("models", &Characterized::models)
       .def("html", &Characterized::html)
       .def("write", &Characterized::write)

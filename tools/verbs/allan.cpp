@@ -105,7 +105,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
       const std::string which = c.more_allan.empty() ? "" : std::string(name_of(curve.type)) + ": ";
       for (const std::string& text : curve.notes) note(which + text);
     };
-    for (const std::string& problem : c.problems) note(problem);
+    for (const Finding& one : c.findings) note(one.sentence);
     take(c.allan);
     for (const AllanCurve& curve : c.more_allan) take(curve);
   }

@@ -11,9 +11,10 @@
 #include <utility>
 
 #include "heap_meter.hpp"
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/bench_inputs.hpp"
 #include "libchar/benchmark/bench_report.hpp"
-#include "libchar/core/document/result_check.hpp"
+#include "libchar/core/document/document_file.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/text/spelling.hpp"
@@ -234,7 +235,9 @@ void run_bench(Session& session, BenchVerb& verb) {
     return out;
   };
   if (!verb.folder.empty()) check_outputs(foreseen(), verb.folder, verb.files, verb.force);
-  const Json older = verb.against.empty() ? Json() : result_document(verb.against);
+  const BenchReport older =
+      verb.against.empty() ? BenchReport{}
+                           : parse_bench_report(read_document_text(verb.against), verb.against);
   check_algorithms(verb);
   const BenchInputs inputs = inputs_of(session, verb);
   check_options_are_used(verb, inputs);
@@ -250,11 +253,11 @@ void run_bench(Session& session, BenchVerb& verb) {
   std::vector<std::string> removed;
   if (!verb.folder.empty())
     removed = write_outputs(bench_files(report, verb.folder), verb.folder, verb.files, verb.force);
-  Json document = bench_json(report);
+  Json document = document_of(bench_fields(), report);
   const double tolerance = verb.tolerance.value_or(5) / 100;
   std::optional<BenchChanges> changes;
   if (!verb.against.empty()) {
-    changes = bench_changes(older, document, verb.against);
+    changes = bench_changes(older, report, verb.against);
     document["against"] = changes_json(*changes, tolerance);
   }
   if (verb.json) {

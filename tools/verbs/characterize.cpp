@@ -94,8 +94,8 @@ Characterization characterized(Session& session,
   report_warnings(session, result.log);
   for (const ChannelResult& c : result.channels) {
     const Judgement judgement = judge(c);
-    outcome.any_fit = outcome.any_fit || !judgement.has(ObjectionKind::no_fit);
-    outcome.agrees = outcome.agrees && !judgement.has(ObjectionKind::simulation);
+    outcome.any_fit = outcome.any_fit || !judgement.has("no_fit");
+    outcome.agrees = outcome.agrees && !judgement.has("simulation_disagrees");
   }
   return result;
 }
@@ -240,9 +240,8 @@ void run_lot(Session& session,
   print_beside(session, fleet_text(report, table_width()));
   for (const Characterization& result : results)
     if (result.limits)
-      print_beside(
-          session,
-          "\n" + printable(result.log.file) + limits_text(*result.limits, text_look().colours));
+      print_beside(session,
+                   "\n" + printable(result.log.file) + limits_text(*result.limits, text_look()));
   say_written(session, files, {});
 }
 

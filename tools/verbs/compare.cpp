@@ -97,7 +97,7 @@ void compare_two_characterizations(Session& session, const CompareVerb& verb) {
   } else if (verb.markdown) {
     print(comparison_markdown(comparison));
   } else {
-    print_text(comparison_text(comparison));
+    print_text(comparison_text(comparison, table_width()));
   }
   if (!failed.empty()) refuse_failed(failed);
 }

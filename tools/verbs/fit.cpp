@@ -45,8 +45,9 @@ std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& 
   if (result.still) session.terminal.note(printable(result.still->sentence));
   std::vector<ChannelFit> fits;
   for (ChannelResult& c : result.channels) {
-    for (const std::string& problem : c.problems)
-      session.terminal.note(fmt::format("{}: {}", printable(c.channel.name), printable(problem)));
+    for (const Finding& one : c.findings)
+      session.terminal.note(
+          fmt::format("{}: {}", printable(c.channel.name), printable(one.sentence)));
     if (c.fit) fits.push_back({c.channel, std::move(*c.fit)});
   }
   return fits;
@@ -144,9 +145,10 @@ void run_fit(Session& session, const FitVerb& verb) {
     if (log.stretch_s) document["stretch_s"] = {log.stretch_s->low, log.stretch_s->high};
     text = dump_json(document);
   } else {
+    const TextLook look = verb.output.empty() ? text_look() : TextLook{};
     for (const ChannelFit& c : fits)
-      text += (text.empty() ? "" : "\n") +
-              fit_text(c.channel, c.fit, verb.output.empty() ? text_look() : libchar::TextLook{});
+      text += (text.empty() ? "" : "\n") + fit_text(c.channel, c.fit, look) +
+              findings_text(c.fit.findings, 5, look.colours);
   }
   if (verb.output.empty()) {
     if (verb.json)

@@ -32,7 +32,7 @@ void run_report(const ReportVerb& verb) {
   if (is_characterization_report(verb.file)) {
     text = coefficient_table(read_characterization_report(verb.file), verb.channels, format);
   } else {
-    const ReplaySummary replay = read_replay_report(verb.file);
+    const ReplayReport replay = read_replay_report(verb.file);
     if (!verb.channels.empty())
       throw Error({ErrorKind::usage,
                    "E0205",

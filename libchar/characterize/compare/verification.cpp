@@ -25,8 +25,7 @@ constexpr std::size_t kRows = std::size_t{1} << 14U;
 // Only the noise: a recording at rest says nothing about the other blocks, and its resolution is in
 // the fit already when it matters.
 SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
-  SensorModel model =
-      sensor_model_from(channel.channel, log, channel.quality, *channel.fit, channel.allan);
+  SensorModel model = sensor_model_from(channel, log);
   model.saturation_low = model.saturation_high = std::nullopt;
   model.resolution = std::nullopt;
   return model;

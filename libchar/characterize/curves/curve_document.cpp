@@ -221,8 +221,6 @@ void write_missing(const Field& row, const TraceOfChannel& channel, std::vector<
   out.push_back(std::move(list));
 }
 
-void pass_over(const MapReader&, std::string_view, TraceOfChannel&) {}
-
 }  // namespace
 
 const Fields<TraceOfChannel>& trace_fields() {
@@ -239,8 +237,7 @@ const Fields<TraceOfChannel>& trace_fields() {
       field<&T::trace, &Trace::block>("samples_per_block", {.range = kPositive}),
       field<&T::trace, &Trace::low>("low", {.meaning = "smallest sample of each block"}),
       field<&T::trace, &Trace::high>("high", {.meaning = "largest"}),
-      custom<T, pass_over, write_missing>(
-          "missing", "pairs", {.meaning = "block, missing samples"}),
+      written<T, write_missing>("missing", "pairs", {.meaning = "block, missing samples"}),
       list_of<&T::marks>("marks", marks),
   });
   return rows;

@@ -95,11 +95,12 @@ void check_runs(std::span<const Characterization> runs) {
     if (std::none_of(run.channels.begin(), run.channels.end(), [](const ChannelResult& c) {
           return c.fit.has_value();
         }))
-      refuse_run(run,
-                 run.channels.empty() || run.channels[0].problems.empty()
-                     ? "no channel of this run could be fitted"
-                     : "no channel of this run could be fitted: " + run.channels[0].problems[0],
-                 "leave this run out");
+      refuse_run(
+          run,
+          run.channels.empty() || run.channels[0].findings.empty()
+              ? "no channel of this run could be fitted"
+              : "no channel of this run could be fitted: " + run.channels[0].findings[0].sentence,
+          "leave this run out");
   }
 }
 

@@ -51,15 +51,22 @@ bool octaves_only(const AllanOptions& allan, DeviationType type) {
   return type == DeviationType::oadev && allan.grid == TauGrid::octave;
 }
 
-// A step that the numbers do not allow becomes a sentence in the result; the other steps go on.
+// A step that the numbers do not allow becomes a finding of the result; the other steps go on.
 template <class Step>
-void attempt(ChannelResult& result, std::string_view what, Step&& step) {
+void attempt(ChannelResult& result,
+             std::string_view what,
+             Step&& step,
+             std::string_view code = "not_computed") {
   try {
     step();
   } catch (const Error& error) {
     if (error.problem().kind != ErrorKind::numeric) throw;
-    result.problems.push_back(fmt::format("no {}: {}", what, error.problem().what));
+    result.findings.push_back(finding(code, fmt::format("no {}: {}", what, error.problem().what)));
   }
+}
+
+void add_findings(const std::vector<Finding>& findings, ChannelResult& result) {
+  result.findings.insert(result.findings.end(), findings.begin(), findings.end());
 }
 
 class Finish {
@@ -72,6 +79,7 @@ class Finish {
  private:
   // what it is
   bool is_whole() const { return is_whole_; }
+  bool is_answered(const Finding& one) const;
   bool wants_fit() const { return options_.wanted.fit || options_.wanted.allan; }
   Quantization quantization() const;
   ChannelQuality quality_of_rate() const;
@@ -105,6 +113,12 @@ class Finish {
   std::vector<NoiseType> noise_types_;
   std::optional<EventSeries> series_;  ///< where the search for motion has made it
 };
+
+// By an option that was given.
+bool Finish::is_answered(const Finding& one) const {
+  return (options_.unwrap > 0 && one.code == "phase_wraps") ||
+         (options_.frozen > 1 && one.code == "stuck");
+}
 
 // Phase becomes rate. One wild reading would be two wild rates that sum to zero: the phase is
 // cleaned, then differenced.
@@ -230,8 +244,8 @@ NoiseFit Finish::fit_of_sums(const AllanCurve& octaves, double rate_hz, FitOptio
 bool Finish::is_noise(ChannelResult& result) const {
   if (!wants_fit()) return false;
   if (options_.data == SampleKind::phase) return true;  // the phase of a clock does rise
-  if (found_.counter.empty()) return true;
-  result.problems.push_back("no noise fit: the channel " + found_.counter);
+  if (found_.signs.counter.empty()) return true;
+  result.findings.push_back(finding("no_fit", "no noise fit: the channel " + found_.signs.counter));
   return false;
 }
 
@@ -250,10 +264,11 @@ bool Finish::is_at_rest(ChannelResult& result, double rate_hz, std::vector<Inter
   series_ = series(rate_hz);
   if (!series_) return true;
   result.motion = find_motion(*series_);
-  for (const std::string& sentence : result.motion.sentences) result.problems.push_back(sentence);
+  add_findings(result.motion.findings, result);
   moving_s = result.motion.moving_s;
   if (result.motion.whole)
-    result.problems.push_back("no noise fit: the recording holds a signal throughout");
+    result.findings.push_back(
+        finding("no_fit", "no noise fit: the recording holds a signal throughout"));
   return !result.motion.whole;
 }
 
@@ -264,31 +279,36 @@ void Finish::find_digital(ChannelResult& result, double rate_hz) const {
   const ValueCensus census = census_of(found_);
   const DigitalSums of_kept =
       is_whole() ? digital_sums(kept_, census, found_.missing) : DigitalSums{};
-  result.digital = find_digital_faults(is_whole() ? of_kept : read_.sums.digital,
-                                       census,
-                                       rate_hz,
-                                       found_.resolution,
-                                       result.channel.unit);
-  for (const std::string& sentence : result.digital.sentences) result.problems.push_back(sentence);
+  result.digital =
+      find_digital_faults(is_whole() ? of_kept : read_.sums.digital,
+                          census,
+                          rate_hz,
+                          has(found_.findings, "dead_band") ? std::nullopt : found_.resolution,
+                          result.channel.unit);
+  add_findings(result.digital.findings, result);
 }
 
 void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& result) {
   if (!is_noise(result)) return;
   find_digital(result, rate_hz);
-  attempt(result, "noise fit", [&] {
-    std::vector<Interval> moving_s;
-    if (!is_at_rest(result, rate_hz, moving_s)) return;
-    FitOptions options = options_.fit;
-    const std::string& unit = result.channel.unit;
-    if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
-    options.clock = options_.data != SampleKind::rate;
-    options.difference_kurtosis = found_.difference_kurtosis;
-    const bool of_kept = is_whole() || read_.temperature;
-    result.fit =
-        of_kept ? fit_of_kept(octaves, rate_hz, options) : fit_of_sums(octaves, rate_hz, options);
-    result.fit->moving_s = std::move(moving_s);
-    doubt_digital(result.digital, *result.fit);
-  });
+  attempt(
+      result,
+      "noise fit",
+      [&] {
+        std::vector<Interval> moving_s;
+        if (!is_at_rest(result, rate_hz, moving_s)) return;
+        FitOptions options = options_.fit;
+        const std::string& unit = result.channel.unit;
+        if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
+        options.clock = options_.data != SampleKind::rate;
+        options.difference_kurtosis = found_.difference_kurtosis;
+        const bool of_kept = is_whole() || read_.temperature;
+        result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options)
+                             : fit_of_sums(octaves, rate_hz, options);
+        result.fit->moving_s = std::move(moving_s);
+        doubt_digital(result.digital, *result.fit);
+      },
+      "no_fit");
 }
 
 // Curve and fit side by side: both need the record and the octaves.
@@ -335,7 +355,7 @@ void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
 // up comes last.
 void Finish::finish(ChannelResult& result, double rate_hz) {
   ChannelResult curve, spectrum;
-  const std::size_t before = result.problems.size();
+  const std::size_t before = result.findings.size();
   const bool last = !is_whole() && whole_spectrum(options_);
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_invoke([&] { curve_and_fit(curve, result, rate_hz); },
@@ -348,11 +368,10 @@ void Finish::finish(ChannelResult& result, double rate_hz) {
   result.more_allan = std::move(curve.more_allan);
   result.spectrum = std::move(spectrum.spectrum);
   result.lines = std::move(spectrum.lines);
-  auto at = result.problems.begin() + static_cast<std::ptrdiff_t>(before);
-  at = result.problems.insert(at, curve.problems.begin(), curve.problems.end());
-  result.problems.insert(at + static_cast<std::ptrdiff_t>(curve.problems.size()),
-                         spectrum.problems.begin(),
-                         spectrum.problems.end());
+  add_findings(spectrum.findings, curve);
+  result.findings.insert(result.findings.begin() + static_cast<std::ptrdiff_t>(before),
+                         curve.findings.begin(),
+                         curve.findings.end());
 }
 
 // A clock is a few parts in a million off, not a hundredth: else somebody has named the wrong kind
@@ -363,13 +382,14 @@ void Finish::doubt_frequency(ChannelResult& result) const {
   const double nominal = options_.nominal_frequency;
   const double off = nominal == 0 ? found_.mean : found_.mean / nominal - 1;
   if (std::abs(off) <= kMostOff) return;
-  result.problems.push_back(
+  result.findings.push_back(finding(
+      "frequency_mean",
       nominal == 0 ? fmt::format("The mean is {:.6g}: without `nominal_frequency` values are taken "
                                  "for fractional frequencies, which are small.",
                                  found_.mean)
                    : fmt::format("The mean, {:.6g}, is far from the nominal frequency of {:.6g}.",
                                  found_.mean,
-                                 nominal));
+                                 nominal)));
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
@@ -402,6 +422,7 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
   result.channel = channel;
   result.channel.unit = unit_of_rate(channel.unit);
   found_ = read_.sums.meters.quality.finish();
+  std::erase_if(found_.findings, [this](const Finding& one) { return is_answered(one); });
   if (options_.wanted.quality) {
     result.quality = quality_of_rate();
     result.trace = read_.sums.meters.trace.finish();
@@ -412,15 +433,10 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
         found_.samples < 2
             ? fmt::format("{}, and so no rate", plural(found_.samples, "sample"))
             : "the sampling rate is not known (a log without time stamps needs `rate_hz`)";
-    result.problems.push_back("no curves and no fit: " + why);
+    result.findings.push_back(finding("no_fit", "no curves and no fit: " + why));
     return result;
   }
-  // Else the quality says so.
-  if (found_.beyond > 0 && !options_.wanted.quality)
-    result.problems.push_back(
-        fmt::format("{} beyond {:g} in magnitude: no measurement, taken as missing",
-                    plural(found_.beyond, "sample"),
-                    kLargestSample));
+  if (!options_.wanted.quality) add_findings(found_.findings, result);  // else the quality says so
   doubt_frequency(result);
   is_whole_ = found_.samples + found_.missing <= kLeafSamples;
   kept_ = std::move(is_whole_ ? read_.sums.kept : read_.all);
@@ -428,9 +444,10 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
   finish(result, rate_hz);
   result.noise_types = noise_types_;
   if (result.fit && !noise_types_.empty())
-    result.fit->sentences.push_back(
-        "Noise types by the lag-1 autocorrelation, as Stable32 names them: " +
-        noise_types_text(noise_types_) + ".");
+    result.fit->findings.push_back(
+        finding("noise_types",
+                "Noise types by the lag-1 autocorrelation, as Stable32 names them: " +
+                    noise_types_text(noise_types_) + "."));
   const auto add_to = [&](AllanCurve& curve) {
     result.fit ? add_fit_intervals(curve, *result.fit)
                : add_intervals(curve, white_alone(result.allan));

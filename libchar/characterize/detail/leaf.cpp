@@ -20,6 +20,28 @@ void forget_wild(std::span<double> samples) {
     if (is_wild(x)) x = std::numeric_limits<double>::quiet_NaN();
 }
 
+void forget_frozen(std::span<double> samples, std::uint64_t fewest) {
+  for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
+    const double value = samples[from];
+    for (to = from + 1; to < samples.size() && samples[to] == value;) ++to;
+    if (to - from >= fewest)
+      std::fill(samples.begin() + static_cast<std::ptrdiff_t>(from),
+                samples.begin() + static_cast<std::ptrdiff_t>(to),
+                std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+void unwrap_by(double period, std::span<double> samples) {
+  double before = std::numeric_limits<double>::quiet_NaN(), turns = 0;
+  for (double& x : samples) {
+    if (std::isnan(x)) continue;
+    const double raw = x;
+    if (std::abs(raw - before) > period / 2) turns -= std::round((raw - before) / period);
+    before = raw;
+    x += turns * period;
+  }
+}
+
 /// What no leaf is asked for must not be refused.
 WelchOptions spectrum_in_leaves(const CharacterizeOptions& options) {
   const bool possible = options.wanted.spectrum && why_not_in_leaves(options).empty();
@@ -73,6 +95,8 @@ LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspa
 
 void LeafStage::make_rate(std::vector<double>& samples) const {
   forget_wild(samples);
+  if (options_->frozen > 1) forget_frozen(samples, options_->frozen);
+  if (options_->unwrap > 0) unwrap_by(options_->unwrap, samples);
   const double nominal = options_->nominal_frequency;
   if (options_->data == SampleKind::frequency && nominal != 0)
     for (double& f : samples) f = (f - nominal) / nominal;
@@ -88,7 +112,8 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
   ChannelSums sums;
   sums.meters = std::move(meters);
   const ChannelQuality found = sums.meters.quality.finish();
-  const bool as_it_is = options_->data == SampleKind::rate && found.beyond == 0;
+  const bool as_it_is = options_->data == SampleKind::rate && found.beyond == 0 &&
+                        options_->frozen <= 1 && !(options_->unwrap > 0);
   if (!as_it_is) {
     rate_.assign(samples.begin(), samples.end());
     make_rate(rate_);
@@ -125,12 +150,12 @@ void LeafStage::join(ChannelSums& sums, ChannelSums later) {
   sums.meters.quality.join(later.meters.quality);
   sums.meters.trace.join(std::move(later.meters.trace));
   if (wants_spectrum_) spectrum_.join(sums.spectrum, later.spectrum);
-  libchar::join(sums.record, std::move(later.record));
+  detail::join(sums.record, std::move(later.record));
   libchar::join(sums.digital, later.digital);
 }
 
 void LeafStage::settle(ChannelSums& sums, std::uint64_t height, std::uint64_t first_leaf) const {
-  libchar::settle(sums.record, height, first_leaf);
+  detail::settle(sums.record, height, first_leaf);
 }
 
 void LeafStage::write_state(const ChannelSums& sums, StateWriter& to) {
@@ -138,7 +163,7 @@ void LeafStage::write_state(const ChannelSums& sums, StateWriter& to) {
   sums.meters.trace.write_state(to);
   to.reals(sums.kept);
   WelchParts::write_state(sums.spectrum, to);
-  libchar::write_state(sums.record, to);
+  detail::write_state(sums.record, to);
   libchar::write_state(sums.digital, to);
   to.number(sums.types.size());
   for (const NoiseType& type : sums.types) {

@@ -52,9 +52,9 @@ void write_log(const LogInfo& log, StateWriter& to) {
   to.number(log.warnings.list().size());
   for (const Warning& warning : log.warnings.list()) {
     to.text(warning.code);
-    to.text(warning.message);
+    to.text(warning.sentence);
     to.number(warning.count);
-    to.texts(warning.places);
+    to.texts(warning.where.rows);
   }
 }
 

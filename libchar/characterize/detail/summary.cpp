@@ -15,8 +15,10 @@ namespace {
 std::string term_phrase(const TermCells& cells) {
   const ShownValue& shown = headline(cells);
   const std::string name = cells.title + " " + cells.letter;
-  return shown.low.empty() ? fmt::format("{} not seen ({})", name, said(shown))
-                           : fmt::format("{} {} {}", name, said(shown), interval_brackets(shown));
+  const char* doubt = cells.status == Status::undetermined ? ", undetermined" : "";
+  return shown.low.empty()
+             ? fmt::format("{} not seen ({}{})", name, said(shown), doubt)
+             : fmt::format("{} {} {}{}", name, said(shown), interval_brackets(shown), doubt);
 }
 
 std::string terms_of(const NoiseFit& fit, const std::string& unit) {
@@ -52,11 +54,12 @@ constexpr std::size_t kMostSpoils = 4;
 
 std::string spoils_phrase(const Judgement& judgement) {
   std::vector<std::string> told;
-  for (const Objection& objection : judgement.objections)
-    if (told.size() < kMostSpoils) told.push_back(objection.phrase);
+  std::size_t more = 0;
+  for (const Finding& one : judgement.findings)
+    if (one.severity != Severity::note)
+      told.size() < kMostSpoils ? told.push_back(one.phrase) : void(++more);
   std::string out = fmt::format("{}", fmt::join(told, "; "));
-  if (judgement.objections.size() > kMostSpoils)
-    out += fmt::format("; and {} more", judgement.objections.size() - kMostSpoils);
+  if (more > 0) out += fmt::format("; and {} more", more);
   return out + ".";
 }
 
@@ -71,7 +74,7 @@ std::string summary_sentence(const ChannelResult& channel,
     return out;
   }
   const std::string terms = terms_of(*channel.fit, unit) + "." + beside_phrase(*channel.fit);
-  if (judgement.objections.empty()) return terms;
+  if (judgement.rating == Rating::good) return terms;
   return terms + (judgement.rating == Rating::bad ? " Do not rely on them: " : " But: ") +
          spoils_phrase(judgement);
 }

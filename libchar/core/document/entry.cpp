@@ -65,6 +65,9 @@ std::string yaml_value(const Entry& entry) {
     for (const auto& one : list) out += (out.empty() ? "" : ", ") + text(one);
     return "[" + out + "]";
   };
+  const auto interval = [&](const Interval& ends) {
+    return listed(std::vector{ends.low, ends.high}, yaml_number);
+  };
   return std::visit(
       Match{[](std::monostate) -> std::string { return "null"; },
             [](bool value) -> std::string { return value ? "true" : "false"; },
@@ -72,9 +75,8 @@ std::string yaml_value(const Entry& entry) {
             [&](const std::string& text) { return entry.bare ? text : quoted_yaml(text); },
             [&](const std::vector<double>& list) { return listed(list, yaml_number); },
             [&](const std::vector<std::string>& list) { return listed(list, quoted_yaml); },
-            [&](const Interval& ends) {
-              return listed(std::vector{ends.low, ends.high}, yaml_number);
-            },
+            [&](const Interval& ends) { return interval(ends); },
+            [&](const std::vector<Interval>& list) { return listed(list, interval); },
             []<class T>(const std::vector<T>&) -> std::string {
               throw std::logic_error("a list that only JSON documents have");
             },

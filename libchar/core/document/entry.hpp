@@ -12,10 +12,6 @@
 
 namespace libchar {
 
-inline bool operator==(const Interval& a, const Interval& b) {
-  return a.low == b.low && a.high == b.high;
-}
-
 using Value = std::variant<std::monostate,  // null
                            bool,
                            double,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -112,7 +113,7 @@ void read_row(const Field& row, const MapReader& at, void* object) {
   const FieldText& text = row.text;
   const auto interval = [&] {
     const Interval ends = at.interval_in(key, at.require(key));
-    if (ends.low < text.range.lowest)
+    if (std::isfinite(ends.low) && ends.low < text.range.lowest)
       at.refuse(key, fmt::format("expected numbers of at least {}", shortest(text.range.lowest)));
     return ends;
   };
@@ -140,10 +141,26 @@ void read_row(const Field& row, const MapReader& at, void* object) {
                    [&](Interval* value) { *value = interval(); },
                    [&](std::optional<Interval>* value) { *value = interval(); },
                    [&](std::vector<Interval>* value) { *value = read_intervals(at, key); },
+                   [&](std::vector<std::vector<double>>* value) {
+                     value->clear();
+                     for (const Document& one : at.list(key))
+                       value->push_back(at.numbers_in(key, one));
+                   },
                    [&](const PartsSlot& parts) { read_parts(row, at, parts); },
                    [&](const WordSlot& slot) {
                      slot.set(slot.at, number_of(text.words, at.word(key, texts_of(text.words))));
                    }},
+             row.slot(object));
+}
+
+// What a null of a report says of a number.
+void read_null(const Field& row, void* object) {
+  if (row.slot == nullptr || row.text.known != nullptr) return;
+  std::visit(Match{[](double* value) { *value = kNone; },
+                   [](Interval* value) {
+                     *value = {kNone, kNone};
+                   },
+                   [](auto) {}},
              row.slot(object));
 }
 
@@ -156,6 +173,7 @@ Value value_of(const Field& row, void* object) {
   };
   return std::visit(Match{[](void*) -> Value { return {}; },
                           [](const PartsSlot&) -> Value { return {}; },
+                          [](std::vector<std::vector<double>>*) -> Value { return {}; },
                           [](int* value) -> Value { return std::int64_t{*value}; },
                           [&](std::optional<Interval>* value) { return optional(value); },
                           [&](bool* value) -> Value {
@@ -175,6 +193,8 @@ Value value_of(const Field& row, void* object) {
 bool same(const Field& row, void* object, void* defaults) {
   const Slot one = row.slot(object), other = row.slot(defaults);
   if (const auto* parts = std::get_if<PartsSlot>(&one)) return parts->size(parts->at) == 0;
+  if (auto* const* lists = std::get_if<std::vector<std::vector<double>>*>(&one))
+    return (*lists)->empty();
   if (!std::holds_alternative<void*>(one)) return value_of(row, object) == value_of(row, defaults);
   return std::all_of(row.below.begin(), row.below.end(), [&](const Field& below) {
     return below.slot == nullptr || same(below, std::get<void*>(one), std::get<void*>(other));
@@ -272,6 +292,10 @@ Entry entry_of(const Field& row, void* object, void* defaults, const Substitutio
   const Slot slot = row.slot(object);
   if (const auto* parts = std::get_if<PartsSlot>(&slot))
     return parts_entry(row, *parts, substitutions);
+  if (auto* const* lists = std::get_if<std::vector<std::vector<double>>*>(&slot)) {
+    entry.form = Entry::Form::list;
+    for (const std::vector<double>& list : **lists) entry.below.push_back({"", list});
+  }
   if (void* const* part = std::get_if<void*>(&slot)) {
     const bool flow = entry.form == Entry::Form::flow;
     entry.form = flow ? Entry::Form::flow : Entry::Form::block;
@@ -333,7 +357,8 @@ std::string_view kind_of(const Slot& slot) {
                                          "[low, high]",
                                          "[low, high]",
                                          "list of [low, high]",
-                                         ""};
+                                         "",
+                                         "lists of numbers"};
   return kKinds[slot.index()];
 }
 
@@ -366,6 +391,8 @@ void read(std::span<const Field> rows, const MapReader& at, void* object) {
       continue;
     else if (at.has(row.key))
       read_row(row, at, object);
+    else if (at.is_null(row.key))
+      read_null(row, object);
   }
 }
 

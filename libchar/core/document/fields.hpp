@@ -84,7 +84,8 @@ using Slot = std::variant<void*,
                           Interval*,
                           std::optional<Interval>*,
                           std::vector<Interval>*,
-                          PartsSlot>;
+                          PartsSlot,
+                          std::vector<std::vector<double>>*>;
 
 enum class Written {
   usual,     ///< as `when_set`, in `always(…)` as `always`
@@ -131,10 +132,15 @@ struct Field {
   void (*write)(const Field& field, const void* object, std::vector<Entry>& out) = nullptr;
 };
 
-/// A row of a document about a T.
+/// A row of a document about a T; one about a base class of T, too, which begins where T begins.
 template <class T>
 struct Row {
   Field field;
+  Row(Field row) : field(std::move(row)) {}
+  template <class Base>
+  requires(std::is_base_of_v<Base, T> && !std::is_same_v<Base, T> && !std::is_polymorphic_v<T>)
+      Row(const Row<Base>& of_base)
+      : field(of_base.field) {}
 };
 
 template <class T>
@@ -253,7 +259,17 @@ auto field(std::string_view key, const FieldText& text = {}) {
   row.optional = requires(Member member) {
     member.has_value();
   };
-  return Row<T>{std::move(row)};
+  return Row<T>(std::move(row));
+}
+
+/// The same, null where the text or the list is empty.
+template <auto First, auto... Rest>
+auto field_or_null(std::string_view key, FieldText text = {}) {
+  using T = typename fields_detail::MemberOf<decltype(First)>::Class;
+  text.known = [](const void* object) {
+    return !((static_cast<const T*>(object)->*First).*....*Rest).empty();
+  };
+  return field<First, Rest...>(key, text);
 }
 
 /// For `FieldText::known`: Known is bool(const T&), or a lambda without captures like it.
@@ -276,7 +292,7 @@ auto computed(std::string_view key, const FieldText& text = {}) {
   row.write = [](const Field& f, const void* object, std::vector<Entry>& out) {
     out.push_back({std::string(f.key), Value(V(Get(*static_cast<const T*>(object))))});
   };
-  return Row<T>{std::move(row)};
+  return Row<T>(std::move(row));
 }
 
 /// The same, a list of parts with rows of their own: Get is std::vector<Part>(const T&).
@@ -292,14 +308,14 @@ auto computed_list(std::string_view key, const Fields<Part>& rows, const FieldTe
       list.below.push_back(part_entry("", fields_detail::entries(f.below, &part, &usual, {})));
     out.push_back(std::move(list));
   };
-  return Row<T>{std::move(row)};
+  return Row<T>(std::move(row));
 }
 
 /// A list of parts that have rows of their own.
 template <auto First, auto... Rest, class Part>
 auto list_of(std::string_view key, const Fields<Part>& rows, const FieldText& text = {}) {
   using T = typename fields_detail::MemberOf<decltype(First)>::Class;
-  return Row<T>{{key, &fields_detail::parts_slot_at<First, Rest...>, text, "list", rows.rows}};
+  return Row<T>(Field{key, &fields_detail::parts_slot_at<First, Rest...>, text, "list", rows.rows});
 }
 
 /// A part that need not be there: an object, or null.
@@ -308,7 +324,7 @@ auto maybe_part(std::string_view key, const Fields<Part>& rows, const FieldText&
   using T = typename fields_detail::MemberOf<decltype(Member)>::Class;
   Field row{key, &fields_detail::parts_slot_at<Member>, text, "", rows.rows};
   row.optional = true;
-  return Row<T>{std::move(row)};
+  return Row<T>(std::move(row));
 }
 
 /// A list of parts in columns; without a key their lists stand beside the keys of the object.
@@ -323,7 +339,7 @@ auto columns_of(std::string_view key, const Fields<Part>& rows, const FieldText&
 template <auto Member, class Part>
 auto part(std::string_view key, const Fields<Part>& rows, const FieldText& text = {}) {
   using T = typename fields_detail::MemberOf<decltype(Member)>::Class;
-  return Row<T>{{key, &fields_detail::slot_at<Member>, text, "", rows.rows}};
+  return Row<T>(Field{key, &fields_detail::slot_at<Member>, text, "", rows.rows});
 }
 
 /// The keys of a part beside those of the object.
@@ -335,7 +351,7 @@ auto beside(const Fields<Part>& rows) {
 /// The same about the object itself: the file has a level that the struct has not.
 template <class T>
 Row<T> level(std::string_view key, const Fields<T>& rows, const FieldText& text = {}) {
-  return {{key, [](void* object) -> Slot { return object; }, text, "", rows.rows}};
+  return Field{key, [](void* object) -> Slot { return object; }, text, "", rows.rows};
 }
 
 /// What every file of a format says; of the words that it may be only checked when read.
@@ -343,7 +359,7 @@ template <class T>
 Row<T> constant(std::string_view key, Value value, const FieldText& text = {}) {
   Field row{key, nullptr, text};
   row.constant = std::move(value);
-  return {std::move(row)};
+  return row;
 }
 
 /// "tool": {name, version} of the program that wrote the file.
@@ -355,13 +371,13 @@ Row<T> tool_row() {
   row.write = [](const Field& field, const void*, std::vector<Entry>& out) {
     out.push_back(tool_entry(field.key));
   };
-  return {std::move(row)};
+  return row;
 }
 
 /// An empty line in YAML, in front of whatever is written next.
 template <class T>
 Row<T> empty_line() {
-  return {{""}};
+  return Field{""};
 }
 
 /// What is no single member: Read is void(const MapReader&, std::string_view key, T&), Write is
@@ -375,7 +391,13 @@ Row<T> custom(std::string_view key, std::string_view kind, const FieldText& text
   row.write = [](const Field& f, const void* object, std::vector<Entry>& out) {
     Write(f, *static_cast<const T*>(object), out);
   };
-  return {std::move(row)};
+  return row;
+}
+
+/// The same, only written.
+template <class T, auto Write>
+Row<T> written(std::string_view key, std::string_view kind, const FieldText& text = {}) {
+  return custom<T, [](const MapReader&, std::string_view, T&) {}, Write>(key, kind, text);
 }
 
 std::vector<std::string> keys_of(std::span<const Field> rows);
@@ -384,7 +406,8 @@ std::vector<std::string> keys_of(const Fields<T>& fields) {
   return keys_of(std::span<const Field>(fields.rows));
 }
 
-/// Reads the values that are there; a member whose key is absent stays as it is. Throws Error(input).
+/// Reads the values that are there; a member whose key is absent stays as it is. A number that is null in a
+/// report is NaN, where its row does not say what null means (`known`). Throws Error(input).
 template <class T>
 void read_fields(const Fields<T>& fields, const MapReader& at, T& object) {
   fields_detail::read(fields.rows, at, &object);

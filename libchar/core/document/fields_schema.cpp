@@ -51,6 +51,7 @@ Json value_schema(const Field& row, bool file) {
   if (row.kind == "list of texts") return plain_list("string", file);
   if (row.kind == "[low, high]") return interval_schema(!row.text.required);
   if (row.kind == "list of [low, high]") return list_schema(interval_schema(true));
+  if (row.kind == "lists of numbers") return list_schema(plain_list(kNumber, false));
   if (row.kind == "number or map") return {{"type", {kNumber, "object", "null"}}};
   if (row.kind.starts_with("list")) return list_schema(Json::object());
   if (row.kind.starts_with("map")) return type_of("object", false);
@@ -82,7 +83,7 @@ Json constant_schema(const Value& value) {
   return {{"const", json_of({{"value", value}})["value"]}};
 }
 
-Json row_schema(const Field& row, bool file) {
+Json known_schema(const Field& row, bool file) {
   if (row.constant) return constant_schema(*row.constant);
   if (row.below.empty()) return value_schema(row, file);
   if (row.layout == Layout::columns) return columns_schema(row);
@@ -90,8 +91,15 @@ Json row_schema(const Field& row, bool file) {
   if (row.kind.starts_with("list")) return list_schema(std::move(part));
   if (row.kind == "map") return {{"type", "object"}, {"additionalProperties", std::move(part)}};
   if (row.kind == "number or map") return {{"anyOf", {type_of(kNumber, true), std::move(part)}}};
-  if (row.optional || may_be_null(row)) part["type"] = {"object", "null"};
+  if (row.optional) part["type"] = {"object", "null"};
   return part;
+}
+
+Json row_schema(const Field& row, bool file) {
+  Json out = known_schema(row, file);
+  if (may_be_null(row) && out.contains("type") && out["type"].is_string())
+    out["type"] = {out["type"], "null"};
+  return out;
 }
 
 std::string description_of(const Field& row) {

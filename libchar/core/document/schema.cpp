@@ -111,6 +111,10 @@ const Document* MapReader::get(std::string_view key) const {
   return entry == nullptr || entry->value.kind == Document::Kind::null ? nullptr : &entry->value;
 }
 
+bool MapReader::is_null(std::string_view key) const {
+  return any_keys_ && node_->find(key) != nullptr && !has(key);
+}
+
 const Document& MapReader::require(std::string_view key) const {
   const Document* value = get(key);
   if (value != nullptr) return *value;

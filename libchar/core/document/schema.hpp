@@ -37,6 +37,8 @@ class MapReader {
   MapReader(const Document& node, std::string file, std::string path);
 
   bool has(std::string_view key) const { return get(key) != nullptr; }
+  /// A report says that it has no such value.
+  bool is_null(std::string_view key) const;
   const Document* get(std::string_view key) const;
   const Document& require(std::string_view key) const;
 

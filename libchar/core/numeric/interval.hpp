@@ -5,6 +5,7 @@ namespace libchar {
 
 struct Interval {
   double low = 0, high = 0;
+  bool operator==(const Interval&) const = default;
 };
 
 /// A standard normal value lies within this of zero with 95 %.

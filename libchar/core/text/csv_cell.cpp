@@ -1,5 +1,9 @@
 #include "libchar/core/text/csv_cell.hpp"
 
+#include <cmath>
+
+#include "libchar/core/text/decimal.hpp"
+
 namespace libchar {
 
 bool begins_like_a_formula(std::string_view text) {
@@ -13,6 +17,14 @@ std::string csv_cell(std::string_view text) {
   std::string quoted = "\"";
   for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + '"';
+}
+
+std::string csv_cell(double value) {
+  return std::isfinite(value) ? shortest(value) : "";
+}
+
+std::string csv_cell(const std::optional<double>& value) {
+  return value ? csv_cell(*value) : "";
 }
 
 }  // namespace libchar

@@ -1,5 +1,7 @@
 #include "libchar/core/text/markup.hpp"
 
+#include "libchar/core/text/text.hpp"
+
 namespace libchar {
 
 std::string markup_entities(std::string_view text) {
@@ -25,6 +27,15 @@ std::string markup_entities(std::string_view text) {
       default:
         out += c;
     }
+  }
+  return out;
+}
+
+std::string markdown_text(std::string_view text) {
+  std::string out;
+  for (const char c : printable(text)) {
+    if (std::string_view("\\`*_{}[]<>|#~&").find(c) != std::string_view::npos) out += '\\';
+    out += c;
   }
   return out;
 }

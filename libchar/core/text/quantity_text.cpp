@@ -84,31 +84,50 @@ std::uint64_t parse_count(std::string_view text, std::uint64_t lowest, std::uint
   return value;
 }
 
+namespace {
+
+double seconds_in(std::string_view text, const std::string& expected) {
+  return with_unit(text,
+                   {{"", 1},
+                    {"s", 1},
+                    {"ms", 1e-3},
+                    {"us", 1e-6},
+                    {"µs", 1e-6},
+                    {"ns", 1e-9},
+                    {"min", 60},
+                    {"h", 3600},
+                    {"d", 86400}},
+                   expected);
+}
+
+}  // namespace
+
 double parse_duration_s(std::string_view text) {
   const std::string expected =
       "a duration such as 90s, 250ms, 5min, 2h or 1d (a bare number is in seconds)";
-  const double value = with_unit(text,
-                                 {{"", 1},
-                                  {"s", 1},
-                                  {"ms", 1e-3},
-                                  {"us", 1e-6},
-                                  {"µs", 1e-6},
-                                  {"ns", 1e-9},
-                                  {"min", 60},
-                                  {"h", 3600},
-                                  {"d", 86400}},
-                                 expected);
+  const double value = seconds_in(text, expected);
   if (!(value >= 0 && value < 1e12)) refuse(text, expected);
   return value;
 }
 
 double parse_rate_hz(std::string_view text) {
   const std::string expected =
-      "a sampling rate above zero such as 200Hz or 1.5kHz (a bare number is in hertz)";
-  const double value = with_unit(
-      text,
-      {{"", 1}, {"Hz", 1}, {"hz", 1}, {"mHz", 1e-3}, {"kHz", 1e3}, {"khz", 1e3}, {"MHz", 1e6}},
-      expected);
+      "a sampling rate above zero such as 200Hz, 1.5kHz or 1/300, or an interval such as 5min (a "
+      "bare number is in hertz)";
+  const auto rate = [&] {
+    if (const std::size_t over = text.find('/'); over != std::string_view::npos) {
+      std::string_view under = text.substr(over + 1);
+      if (under.ends_with("Hz")) under.remove_suffix(2);
+      return with_unit(text.substr(0, over), {{"", 1}}, expected) / seconds_in(under, expected);
+    }
+    const char end = text.empty() ? ' ' : text.back();
+    if (end == 's' || end == 'n' || end == 'h' || end == 'd') return 1 / seconds_in(text, expected);
+    return with_unit(
+        text,
+        {{"", 1}, {"Hz", 1}, {"hz", 1}, {"mHz", 1e-3}, {"kHz", 1e3}, {"khz", 1e3}, {"MHz", 1e6}},
+        expected);
+  };
+  const double value = rate();
   if (!(value >= 1e-9 && value <= 1e9)) refuse(text, expected + " between 1e-9 and 1e9 Hz");
   return value;
 }

@@ -79,10 +79,6 @@ std::string said(const std::vector<ShownValue>& shown) {
   return out;
 }
 
-std::string interval_words(const ShownValue& shown) {
-  return shown.low.empty() ? "" : shown.low + " … " + shown.high;
-}
-
 std::string interval_brackets(const ShownValue& shown) {
   return shown.low.empty() ? "" : fmt::format("[{}, {}]", shown.low, shown.high);
 }
@@ -93,12 +89,9 @@ std::string status_words(Status status) {
   return out;
 }
 
-bool doubted(Status status) {
-  return status == Status::undetermined || status == Status::misfit;
-}
-
 Tint tint_of(Status status) {
-  if (doubted(status)) return status == Status::misfit ? Tint::bad : Tint::doubtful;
+  if (status == Status::misfit) return Tint::bad;
+  if (status == Status::undetermined) return Tint::doubtful;
   return status == Status::detected || status == Status::given ? Tint::good : Tint::absent;
 }
 

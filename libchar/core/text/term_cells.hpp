@@ -50,14 +50,11 @@ std::string unit_with_reading(const ShownValue& shown);
 /// "0.3403 deg/s/√Hz one-sided", of all in a row.
 std::string said(const ShownValue& shown);
 std::string said(const std::vector<ShownValue>& shown);
-/// "0.0121 … 0.0125", "[0.0121, 0.0125]"; "" without an interval.
-std::string interval_words(const ShownValue& shown);
+/// "[0.0121, 0.0125]"; "" without an interval.
 std::string interval_brackets(const ShownValue& shown);
 
 /// "not detected": without the underlines of files.
 std::string status_words(Status status);
-/// Fitted, and not to be relied on.
-bool doubted(Status status);
 Tint tint_of(Status status);
 
 /// "White noise"; of a channel in `unit`: "Angle random walk" of an angular rate, "Velocity random

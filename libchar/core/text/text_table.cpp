@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libchar/core/table/detail/text_table.hpp"
+
 namespace libchar {
 namespace {
 

@@ -43,7 +43,9 @@ AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
   if (c.value && *c.value > 0) out.value = *c.value * factor;
   if (!c.value && c.upper95 && *c.upper95 > 0) out.limit = *c.upper95 * factor;
   const double driving = driving_density(placed.model->gauss_markov);
-  if (term != Term::walk || !(driving > 0)) return out;
+  // An undetermined process says no more of slow noise than the terms' limits do.
+  if (term != Term::walk || !(driving > 0) || doubted(placed.model->gauss_markov.status))
+    return out;
   out.value = std::hypot(out.value.value_or(0), driving * factor);
   out.driven = true;
   return out;
@@ -189,6 +191,23 @@ std::array<Figure, 3> axis_figures(const SensorTriad& triad,
   return {one_axis(numbers[0], absent), one_axis(numbers[1], absent), one_axis(numbers[2], absent)};
 }
 
+namespace {
+
+/// A data sheet that gives a floor and no walk: what drives the Gauss-Markov bias with that floor.
+std::string walk_of_floor(const SensorTriad& triad, const ExportOptions& options) {
+  const PlacedModel& placed = representative(triad, options);
+  if (!(placed.model->noise[static_cast<std::size_t>(Term::flicker)].value.value_or(0) > 0))
+    return "";
+  const double driving = gauss_markov(placed, options).driving / placed.to_si / options.inflate;
+  return fmt::format(
+      "; a bias with this bias_instability as its floor is driven by {} {} two-sided, {} one-sided",
+      shortest(rounded(driving, 3)),
+      term_unit(kTermNames[static_cast<std::size_t>(Term::walk)].key, placed.model->unit),
+      shortest(rounded(driving * std::sqrt(2.0), 3)));
+}
+
+}  // namespace
+
 Figure positive_figure(const SensorTriad& triad,
                        Term term,
                        const ExportOptions& options,
@@ -207,7 +226,8 @@ Figure positive_figure(const SensorTriad& triad,
                    name.key),
        "",
        fmt::format("state one in the model file: {}: {{value: …, unit: …, status: given}}",
-                   name.key)});
+                   name.key) +
+           (term == Term::walk ? walk_of_floor(triad, options) : "")});
 }
 
 namespace {

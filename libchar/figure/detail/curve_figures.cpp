@@ -191,18 +191,6 @@ void set_band(FigureSeries& series, const SourceCurve& c) {
   if (!series.low.empty()) series.band = "95 % interval";
 }
 
-FigureSeries line_series(const std::string& name,
-                         const std::vector<double>& x,
-                         const std::vector<double>& y,
-                         const FigureLook& look) {
-  FigureSeries out;
-  out.name = name;
-  out.x = x;
-  out.y = y;
-  out.look = look;
-  return out;
-}
-
 void add_terms(Chart& figure, const SourceCurve& c) {
   for (const Asymptote& line : c.lines) {
     figure.series.push_back(

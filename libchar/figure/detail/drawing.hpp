@@ -59,6 +59,7 @@ struct DrawnPath {
   double width = 0.5;
   std::vector<double> dash;
   bool clipped = false;  ///< to the frame
+  std::string tip;       ///< where the pointer rests, on a page
 };
 
 struct DrawnPiece {
@@ -88,6 +89,7 @@ inline constexpr double kRaisedSize = 0.72, kRaisedBy = 0.36;
 
 inline constexpr const char* kFigureFont = "Liberation Sans";
 
-std::string svg_of(const Drawing& drawing);
+/// A file; with a name, part of a page on which no other drawing has it.
+std::string svg_of(const Drawing& drawing, const std::string& name = "");
 
 }  // namespace libchar

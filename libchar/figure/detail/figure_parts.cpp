@@ -8,6 +8,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
+#include "libchar/core/units.hpp"
 
 namespace libchar {
 
@@ -143,6 +144,23 @@ void refuse_kind(const FigureSource& source, std::string_view kind, const std::s
                fmt::format("no figure `{}` can be drawn of it: {}", kind, why),
                "",
                ""});
+}
+
+FigureSeries line_series(const std::string& name,
+                         const std::vector<double>& x,
+                         const std::vector<double>& y,
+                         const FigureLook& look) {
+  FigureSeries out;
+  out.name = name;
+  out.x = x;
+  out.y = y;
+  out.look = look;
+  return out;
+}
+
+std::string usual_figure_unit(const std::string& unit) {
+  const auto known = find_unit(unit);
+  return shown_unit(known && known->symbol != "1" ? known->symbol : unit);
 }
 
 }  // namespace libchar

@@ -47,6 +47,11 @@ std::string term_words(Term term);
 /// all its samples would.
 void add_extremes(FigureSeries& series, double x, double low, double high);
 
+FigureSeries line_series(const std::string& name,
+                         const std::vector<double>& x,
+                         const std::vector<double>& y,
+                         const FigureLook& look);
+
 /// "Error [rad/s]"; the words alone for a ratio.
 std::string axis_title(const std::string& words, const std::string& unit);
 
@@ -63,5 +68,8 @@ void refuse_unmatched(const std::vector<std::string>& patterns,
                               const std::string& why);
 
 bool above_zero(double value);
+
+/// "deg/s" for what means the same; "U" where there is none; "" for a ratio.
+std::string usual_figure_unit(const std::string& unit);
 
 }  // namespace libchar

@@ -255,7 +255,7 @@ Sheet make_sheet(const Chart& figure, const DrawingOptions& options, double lege
   if (!(options.width_mm > 0 && options.width_mm <= kLargestMm && options.height_mm >= 0 &&
         options.height_mm <= kLargestMm))
     refuse_size(options.width_mm, options.height_mm);
-  double inner = frame_height(figure, width);
+  double inner = options.shape > 0 ? options.shape * width : frame_height(figure, width);
   axes.y = y_ticks(figure, width, inner);
   axes.x = x_ticks(figure, width);
   Margins m = margins_of(figure, axes.x, axes.y, legend);

@@ -241,7 +241,7 @@ void draw_marks(Sheet& sheet) {
   }
   for (std::size_t k = 0; k < marks.size(); ++k)
     if (sheet.drawing.frame.holds(at[k]))
-      add_marker(sheet, marks[k].look, {at[k]}, marks[k].hollow);
+      add_marker(sheet, marks[k].look, {at[k]}, marks[k].hollow, marks[k].tip);
   for (std::size_t k = 0; k < marks.size(); ++k) {
     const FigureMark& m = marks[k];
     if (m.text.empty() || !sheet.drawing.frame.holds(at[k])) continue;

@@ -10,7 +10,7 @@
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
-#include "libchar/figure/detail/sources/replay_report.hpp"
+#include "libchar/figure/detail/shown_replay.hpp"
 
 namespace libchar {
 namespace {
@@ -19,31 +19,31 @@ namespace {
 constexpr double kFarthest = 1000, kFarthestOfRanking = 30;
 
 struct CostPoint {
-  const ShownAlgorithm* algorithm = nullptr;
+  const ReplayReport::Algorithm* algorithm = nullptr;
   double cost = 0, score = 0;
   bool on_front = false, beyond = false;
 };
 
-void refuse_unmatched_methods(const ShownReplay& replay, const FigureOptions& options) {
-  std::vector<std::string> labels;
-  for (const ShownAlgorithm& one : replay.ranked) labels.push_back(one.label);
-  refuse_unmatched(options.channels, labels, replay.file);
-}
+/// What a method costs, and whether it is on the front of that cost.
+struct CostKind {
+  const char* kind;
+  const char* title;
+  double (*cost)(const ReplayReport::Algorithm& algorithm);
+  bool ReplayReport::Algorithm::*on_front;
+};
 
 std::vector<CostPoint> cost_points(const ShownReplay& replay,
                                    const FigureOptions& options,
-                                   const std::string& key,
-                                   const std::string& front) {
+                                   const CostKind& kind) {
   refuse_unmatched_methods(replay, options);
   std::vector<CostPoint> out;
   double least = kNone;
-  for (const ShownAlgorithm& one : replay.ranked) {
-    if (!is_wanted(options.channels, one.label)) continue;
-    const double cost = one.map.number_or(key, kNone);
-    if (!above_zero(one.score) || !above_zero(cost)) continue;
-    const bool on_front = one.map.has("on_front") && one.map.map("on_front").flag_or(front, false);
-    out.push_back({&one, cost, one.score, on_front, false});
-    least = std::fmin(least, one.score);
+  for (const ReplayReport::Algorithm* one : replay.ranked) {
+    if (!is_wanted(options.channels, one->label)) continue;
+    const double cost = kind.cost(*one);
+    if (!above_zero(one->rmse) || !above_zero(cost)) continue;
+    out.push_back({one, cost, one->rmse, one->*kind.on_front, false});
+    least = std::fmin(least, one->rmse);
   }
   for (CostPoint& p : out)
     if (p.score > kFarthest * least) {
@@ -80,16 +80,6 @@ void add_staircase(Chart& figure, std::vector<CostPoint> points) {
   figure.series.push_back(std::move(line));
 }
 
-/// A level line across the whole figure.
-FigureSeries level_line(const Chart& figure, const std::string& name, double y, std::size_t dash) {
-  FigureSeries out;
-  out.name = name;
-  out.x = {figure.x.low, figure.x.high};
-  out.y = {y, y};
-  out.look = {.ink = Ink::black, .dash = dash, .width = 0.7};
-  return out;
-}
-
 /// What the legend says of marks: a series without points.
 FigureSeries legend_key(const std::string& name, FigureMarker marker, Ink ink, bool hollow) {
   FigureSeries out;
@@ -110,13 +100,13 @@ void add_cost_marks(Chart& figure,
                       .marker = p.algorithm->bound    ? FigureMarker::triangle
                                 : p.algorithm->learns ? FigureMarker::square
                                                       : FigureMarker::circle,
-                      .size = p.algorithm->label == replay.best ? 3.4 : 2.3};
+                      .size = p.algorithm->label == replay.report->best ? 3.4 : 2.3};
   };
   for (const CostPoint& p : points)
     figure.marks.push_back(
         {p.cost,
          p.score,
-         p.algorithm->label + (p.beyond ? " ↑ " + number_text(p.algorithm->score, 3) : ""),
+         p.algorithm->label + (p.beyond ? " ↑ " + number_text(p.algorithm->rmse, 3) : ""),
          look_of(p),
          p.algorithm->bound});
   const auto key = [&](const char* name, FigureMarker marker, Ink ink, bool any_of_it) {
@@ -126,27 +116,27 @@ void add_cost_marks(Chart& figure,
     return std::any_of(
         points.begin(), points.end(), [&](const CostPoint& p) { return is(*p.algorithm); });
   };
-  key("needs no reference", FigureMarker::circle, Ink::blue, any([](const ShownAlgorithm& a) {
-        return !a.bound && !a.learns;
-      }));
-  key("learns from a reference", FigureMarker::square, Ink::blue, any([](const ShownAlgorithm& a) {
-        return !a.bound && a.learns;
-      }));
-  key("bound", FigureMarker::triangle, Ink::grey, any([](const ShownAlgorithm& a) {
+  key("needs no reference",
+      FigureMarker::circle,
+      Ink::blue,
+      any([](const ReplayReport::Algorithm& a) { return !a.bound && !a.learns; }));
+  key("learns from a reference",
+      FigureMarker::square,
+      Ink::blue,
+      any([](const ReplayReport::Algorithm& a) { return !a.bound && a.learns; }));
+  key("bound", FigureMarker::triangle, Ink::grey, any([](const ReplayReport::Algorithm& a) {
         return a.bound;
       }));
 }
 
 Chart cost_figure(std::span<const FigureSource> sources,
                   const FigureOptions& options,
-                  const std::string& key,
-                  const std::string& front,
-                  const std::string& title) {
+                  const CostKind& kind) {
   const ShownReplay replay = shown_replay(sources[0], {});
-  const std::vector<CostPoint> points = cost_points(replay, options, key, front);
+  const std::vector<CostPoint> points = cost_points(replay, options, kind);
   if (points.empty())
     refuse_kind(sources[0],
-                front == "time" ? "front" : "memory",
+                kind.kind,
                 "no method has both an error and this cost (a replay measures costs unless it is "
                 "told not to)");
   Chart out;
@@ -158,42 +148,51 @@ Chart cost_figure(std::span<const FigureSource> sources,
   y.take(replay.optimum);
   x.pad(2.5);
   y.pad(std::max(1.2, std::pow(y.high() / y.low(), 0.08)));
-  out.x = {.title = title, .log = true, .rows = {}};
-  out.y = {.title = axis_title(replay.score_name, replay.unit), .log = true, .rows = {}};
+  out.x = {.title = kind.title, .log = true, .rows = {}};
+  out.y = {.title = axis_title(std::string(replay.report->score_words()), replay.unit),
+           .log = true,
+           .rows = {}};
   set_ends(out.x, x, options.x_range);
   set_ends(out.y, y, options.y_range);
   add_staircase(out, points);
   if (above_zero(replay.optimum))
-    out.series.push_back(level_line(out, "optimum of this scene", replay.optimum, 2));
+    out.series.push_back(line_series("optimum of this scene",
+                                     {out.x.low, out.x.high},
+                                     {replay.optimum, replay.optimum},
+                                     {.ink = Ink::black, .dash = 2, .width = 0.7}));
   add_cost_marks(out, replay, points);
-  out.about = replay.score_name + " against " + title;
+  out.about = fmt::format("{} against {}", replay.report->score_words(), kind.title);
   return out;
-}
-
-std::vector<double> interval_of(const ShownAlgorithm& one, bool rmse) {
-  if (rmse) return report_numbers(one.map, "rmse_ci95", 2);
-  const MapReader blind = one.map.map("without_reference");
-  return report_numbers(blind, "predictive_ci95", 2);
 }
 
 }  // namespace
 
 Chart front_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
-  return cost_figure(sources, options, "ns_per_sample", "time", "Run time [ns a sample]");
+  return cost_figure(sources,
+                     options,
+                     {"front",
+                      "Run time [ns a sample]",
+                      [](const auto& a) { return a.ns_per_sample; },
+                      &ReplayReport::Algorithm::on_time_front});
 }
 
 Chart memory_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
-  return cost_figure(sources, options, "peak_bytes", "memory", "Peak memory [bytes]");
+  return cost_figure(sources,
+                     options,
+                     {"memory",
+                      "Peak memory [bytes]",
+                      [](const auto& a) { return a.bytes(); },
+                      &ReplayReport::Algorithm::on_memory_front});
 }
 
 namespace {
 
-std::vector<const ShownAlgorithm*> ranking_rows(const ShownReplay& replay,
-                                                const FigureOptions& options) {
+std::vector<const ReplayReport::Algorithm*> ranking_rows(const ShownReplay& replay,
+                                                         const FigureOptions& options) {
   refuse_unmatched_methods(replay, options);
-  std::vector<const ShownAlgorithm*> out;
-  for (const ShownAlgorithm& one : replay.ranked)
-    if (above_zero(one.score) && is_wanted(options.channels, one.label)) out.push_back(&one);
+  std::vector<const ReplayReport::Algorithm*> out;
+  for (const ReplayReport::Algorithm* one : replay.ranked)
+    if (above_zero(one->rmse) && is_wanted(options.channels, one->label)) out.push_back(one);
   return out;
 }
 
@@ -201,22 +200,22 @@ std::vector<const ShownAlgorithm*> ranking_rows(const ShownReplay& replay,
 void add_ranking_row(Chart& chart,
                      Extent& x,
                      const ShownReplay& replay,
-                     const ShownAlgorithm& one,
+                     const ReplayReport::Algorithm& one,
                      double farthest) {
   const auto row = static_cast<double>(chart.y.rows.size());
-  const bool beyond = one.score > farthest, best = one.label == replay.best;
-  const double at = std::min(one.score, farthest);
-  const std::vector<double> ci =
-      beyond ? std::vector<double>{} : interval_of(one, replay.score_name == "RMSE");
-  if (ci.size() == 2 && above_zero(ci[0]) && above_zero(ci[1])) {
-    chart.whiskers.push_back({ci[0], row, ci[1], row, Ink::black});
-    x.take(ci);
+  const bool beyond = one.rmse > farthest, best = one.label == replay.report->best;
+  const double at = std::min(one.rmse, farthest);
+  const Interval& ci = one.rmse_ci95;
+  if (!beyond && above_zero(ci.low) && above_zero(ci.high)) {
+    chart.whiskers.push_back({ci.low, row, ci.high, row, Ink::black});
+    x.take(ci.low);
+    x.take(ci.high);
   }
   x.take(at);
-  const bool equal = best || one.map.flag_or("as_good_as_best", false);
+  const bool equal = best || one.as_good_as_best;
   chart.marks.push_back({at,
                          row,
-                         beyond ? number_text(one.score, 3) : "",
+                         beyond ? number_text(one.rmse, 3) : "",
                          {.ink = one.bound ? Ink::grey
                                  : equal   ? Ink::blue
                                            : Ink::vermilion,
@@ -228,13 +227,9 @@ void add_ranking_row(Chart& chart,
 }
 
 void add_ranking_line(Chart& chart, const char* name, double at, std::size_t dash, Ink ink) {
-  if (!above_zero(at)) return;
-  FigureSeries line;
-  line.name = name;
-  line.x = {at, at};
-  line.y = {chart.y.low, chart.y.high};
-  line.look = {.ink = ink, .dash = dash, .width = 0.8};
-  chart.series.push_back(std::move(line));
+  if (above_zero(at))
+    chart.series.push_back(line_series(
+        name, {at, at}, {chart.y.low, chart.y.high}, {.ink = ink, .dash = dash, .width = 0.8}));
 }
 
 void add_ranking_keys(Chart& chart) {
@@ -251,27 +246,29 @@ void add_ranking_keys(Chart& chart) {
 
 Chart ranking_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   const ShownReplay replay = shown_replay(sources[0], {});
-  const std::vector<const ShownAlgorithm*> rows = ranking_rows(replay, options);
+  const std::vector<const ReplayReport::Algorithm*> rows = ranking_rows(replay, options);
   if (rows.empty()) refuse_kind(sources[0], "ranking", "no method has a score");
   double least = kNone;
-  for (const ShownAlgorithm* one : rows) least = std::fmin(least, one->score);
+  for (const ReplayReport::Algorithm* one : rows) least = std::fmin(least, one->rmse);
   Chart out;
   Extent x(true);
-  for (const ShownAlgorithm* one : rows)
+  for (const ReplayReport::Algorithm* one : rows)
     add_ranking_row(out, x, replay, *one, kFarthestOfRanking * least);
   x.take(replay.optimum);
   x.pad(std::max(1.02, std::pow(x.high() / x.low(), 0.06)));
-  out.x = {.title = axis_title(replay.score_name, replay.unit), .log = true, .rows = {}};
+  out.x = {.title = axis_title(std::string(replay.report->score_words()), replay.unit),
+           .log = true,
+           .rows = {}};
   set_ends(out.x, x, options.x_range);
   out.y.low = -0.5;
   out.y.high = static_cast<double>(rows.size()) - 0.5;
   add_ranking_line(out, "optimum of this scene", replay.optimum, 2, Ink::black);
-  if (replay.has_reference && replay.map.has("best_sensor"))
-    for (const MapReader& sensor : replay.map.maps("sensors"))
-      if (sensor.text_or("name", "") == replay.map.text_or("best_sensor", ""))
-        add_ranking_line(out, "best single sensor", sensor.number_or("rmse", kNone), 1, Ink::green);
+  if (replay.report->reference)
+    for (const SensorResult& sensor : replay.report->sensors)
+      if (sensor.name == replay.report->best_sensor)
+        add_ranking_line(out, "best single sensor", sensor.error.rmse, 1, Ink::green);
   add_ranking_keys(out);
-  out.about = replay.score_name + " of each method";
+  out.about = fmt::format("{} of each method", replay.report->score_words());
   return out;
 }
 

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/figure/detail/replay_figures.hpp"
-#include "libchar/figure/detail/sources/replay_report.hpp"
+#include "libchar/figure/detail/shown_replay.hpp"
 
 namespace libchar {
 namespace {
@@ -18,25 +19,30 @@ namespace {
 constexpr std::size_t kMostSensors = 24;
 
 /// The part of a list of inputs that is about the input that is drawn.
-MapReader of_input(const MapReader& map, const ShownReplay& replay) {
-  std::vector<MapReader> all = map.maps("inputs");
-  if (replay.input >= all.size()) map.refuse("inputs", "the list is too short");
-  return all[replay.input];
+template <class Input>
+const Input& of_input(const std::vector<Input>& inputs, const ShownReplay& replay) {
+  if (replay.input < inputs.size()) return inputs[replay.input];
+  throw Error({ErrorKind::input,
+               "E0982",
+               replay.report->file,
+               "a list of inputs is too short",
+               "",
+               "was the report edited? write it again"});
 }
 
 /// The run, or the stretch of it of which every instant was kept and that holds all that is asked for.
-MapReader run_shown(const ShownReplay& replay, const FigureOptions& options) {
-  MapReader run = replay.map.map("run");
-  if (!options.x_range || !run.has("close_ups")) return run;
-  for (MapReader& close : run.maps("close_ups"))
-    if (close.number("from_s") <= options.x_range->low * replay.time_unit_s &&
-        close.number("to_s") >= options.x_range->high * replay.time_unit_s)
-      return close;
+const ReplayReport::Stretch& run_shown(const ShownReplay& replay, const FigureOptions& options) {
+  const ReplayReport::Stretch& run = *replay.report->run;
+  if (options.x_range)
+    for (const ReplayReport::Stretch& close : run.close_ups)
+      if (close.from_s <= options.x_range->low * replay.time_unit_s &&
+          close.to_s >= options.x_range->high * replay.time_unit_s)
+        return close;
   return run;
 }
 
 /// A signal that swings through most of its range within each stretch of the whole run would be a filled rectangle.
-bool hides_itself(const ReportTrack& track) {
+bool hides_itself(const Timeline& track) {
   constexpr double kMostOfRange = 0.5;
   if (track.low.empty()) return false;
   Extent all(false);
@@ -55,18 +61,14 @@ bool hides_itself(const ReportTrack& track) {
 /// Where nothing else is asked and the whole run hides itself: the stretch in which the first fault
 /// begins, else the first that was kept with every instant.
 FigureOptions with_readable_stretch(const ShownReplay& replay, FigureOptions options) {
-  const MapReader run = replay.map.map("run");
-  if (options.x_range || !run.has("close_ups")) return options;
-  const ReportTrack whole =
-      report_track(of_input(run, replay), "estimate", report_numbers(run, "time_s"));
-  if (!hides_itself(whole)) return options;
+  const ReplayReport::Stretch& run = *replay.report->run;
+  if (options.x_range || !hides_itself(of_input(run.inputs, replay).estimate)) return options;
   double fault_s = kNone;
-  if (replay.map.has("faults"))
-    for (const MapReader& fault : replay.map.maps("faults"))
-      fault_s = std::fmin(fault_s, fault.number("from_s"));
+  for (const ReplayReport::Fault& fault : replay.report->faults)
+    fault_s = std::fmin(fault_s, fault.from_s);
   for (const bool any : {false, true})
-    for (const MapReader& close : run.maps("close_ups")) {
-      const double from = close.number("from_s"), to = close.number("to_s");
+    for (const ReplayReport::Stretch& close : run.close_ups) {
+      const double from = close.from_s, to = close.to_s;
       if (!(from < to) || (!any && !(from <= fault_s && fault_s <= to))) continue;
       options.x_range = Interval{from / replay.time_unit_s, to / replay.time_unit_s};
       return options;
@@ -74,13 +76,9 @@ FigureOptions with_readable_stretch(const ShownReplay& replay, FigureOptions opt
   return options;
 }
 
-struct RunWords {
-  std::string method, sensor;
-};
-
-RunWords words_of_run(const ShownReplay& replay) {
-  const MapReader run = replay.map.map("run");
-  return {run.text_or("method", "estimate"), run.text_or("sensor", "")};
+std::string method_of(const ShownReplay& replay) {
+  const std::string& method = replay.report->run->method;
+  return method.empty() ? "estimate" : method;
 }
 
 void take_series(Extent& y, const FigureSeries& series, const FigureAxis& x) {
@@ -94,7 +92,7 @@ void take_series(Extent& y, const FigureSeries& series, const FigureAxis& x) {
 }
 
 void refuse_without_run(const FigureSource& source, const ShownReplay& replay, const char* kind) {
-  if (!replay.map.has("run")) refuse_kind(source, kind, "nothing was estimated over its run");
+  if (!replay.report->run) refuse_kind(source, kind, "nothing was estimated over its run");
 }
 
 const FigureLook kReferenceLook{.ink = Ink::black, .dash = 0, .width = 1.3};
@@ -103,7 +101,7 @@ const FigureLook kSensorLook{.ink = Ink::sky, .dash = 0, .width = 0.5};
 
 /// A signal as all its samples would look.
 FigureSeries signal_series(const std::string& name,
-                           const ReportTrack& track,
+                           const Timeline& track,
                            const ShownReplay& replay,
                            const FigureLook& look) {
   FigureSeries out;
@@ -113,6 +111,17 @@ FigureSeries signal_series(const std::string& name,
   for (std::size_t i = 0; i < track.time_s.size(); ++i)
     add_extremes(out, track.time_s[i] / replay.time_unit_s, track.low[0][i], track.high[0][i]);
   return out;
+}
+
+void add_best_sensor(Chart& figure, const Timeline& track, const ShownReplay& replay) {
+  if (!track.empty())
+    figure.series.push_back(signal_series(
+        "best sensor " + replay.report->run->sensor_name, track, replay, kSensorLook));
+}
+
+std::string name_of_input(const ShownReplay& replay) {
+  const std::string& name = replay.report->inputs[replay.input].name;
+  return name.empty() ? "value" : name;
 }
 
 void set_value_axis(Chart& figure,
@@ -132,24 +141,18 @@ Chart timeline_figure(std::span<const FigureSource> sources, const FigureOptions
   const ShownReplay replay = shown_replay(sources[0], asked);
   refuse_without_run(sources[0], replay, "timeline");
   const FigureOptions options = with_readable_stretch(replay, asked);
-  const MapReader run = run_shown(replay, options);
-  const RunWords words = words_of_run(replay);
-  const std::vector<double> time = report_numbers(run, "time_s");
+  const ReplayReport::Stretch& run = run_shown(replay, options);
+  const InputTracks& input = of_input(run.inputs, replay);
   Chart out;
   set_time_axis(out, replay, options);
   add_run_marks(out, replay);
-  const MapReader input = of_input(run, replay);
-  const ReportTrack sensor = report_track(run, "sensor_value", time),
-                    reference = report_track(input, "reference", time);
-  if (!reference.empty())
-    out.series.push_back(signal_series("reference", reference, replay, kReferenceLook));
-  if (!sensor.empty())
-    out.series.push_back(signal_series("best sensor " + words.sensor, sensor, replay, kSensorLook));
-  out.series.push_back(
-      signal_series(words.method, report_track(input, "estimate", time), replay, kEstimateLook));
+  if (!input.reference.empty())
+    out.series.push_back(signal_series("reference", input.reference, replay, kReferenceLook));
+  add_best_sensor(out, run.sensor, replay);
+  out.series.push_back(signal_series(method_of(replay), input.estimate, replay, kEstimateLook));
   Extent y(false);
   for (const FigureSeries& series : out.series) take_series(y, series, out.x);
-  set_value_axis(out, replay.input_name, replay.unit, y, options, 0.06);
+  set_value_axis(out, name_of_input(replay), replay.unit, y, options, 0.06);
   out.about = "The run: reference, estimate and best sensor";
   return out;
 }
@@ -157,19 +160,15 @@ Chart timeline_figure(std::span<const FigureSource> sources, const FigureOptions
 Chart error_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   const ShownReplay replay = shown_replay(sources[0], options);
   refuse_without_run(sources[0], replay, "error");
-  const MapReader run = run_shown(replay, options);
-  const RunWords words = words_of_run(replay);
-  const std::vector<double> time = report_numbers(run, "time_s");
-  const ReportTrack error = report_track(of_input(run, replay), "error", time),
-                    sensor = report_track(run, "sensor_error", time);
+  const ReplayReport::Stretch& run = run_shown(replay, options);
+  const Timeline& error = of_input(run.inputs, replay).error;
   if (error.empty())
     refuse_kind(sources[0], "error", "without a reference there is no error over the run");
   Chart out;
   set_time_axis(out, replay, options);
   add_run_marks(out, replay);
-  if (!sensor.empty())
-    out.series.push_back(signal_series("best sensor " + words.sensor, sensor, replay, kSensorLook));
-  out.series.push_back(signal_series(words.method, error, replay, kEstimateLook));
+  add_best_sensor(out, run.sensor_error, replay);
+  out.series.push_back(signal_series(method_of(replay), error, replay, kEstimateLook));
   Extent y(false);
   for (const FigureSeries& series : out.series) take_series(y, series, out.x);
   set_value_axis(out, "Estimate − reference", replay.unit, y, options, 0.06);
@@ -185,7 +184,7 @@ Chart window_figure(std::span<const FigureSource> sources, const FigureOptions& 
   Extent y(true);
   const auto shown = shown_algorithms(replay, options);
   for (std::size_t k = 0; k < shown.size(); ++k) {
-    const ReportTrack track = report_track(of_input(shown[k]->map, replay), "window_rms");
+    const Timeline& track = of_input(shown[k]->inputs, replay).window_rms;
     if (track.empty()) continue;
     out.series.push_back(track_series(shown[k]->label, track, 0, replay, true, series_look(k)));
     take_series(y, out.series.back(), out.x);
@@ -194,15 +193,13 @@ Chart window_figure(std::span<const FigureSource> sources, const FigureOptions& 
     refuse_kind(sources[0], "window", "no method has an error over time (there is no reference)");
   if (above_zero(replay.optimum)) {
     y.take(replay.optimum);
-    FigureSeries optimum;
-    optimum.name = "optimum of this scene";
-    optimum.x = {out.x.low, out.x.high};
-    optimum.y = {replay.optimum, replay.optimum};
-    optimum.look = {.ink = Ink::black, .dash = 2, .width = 0.7};
-    out.series.push_back(std::move(optimum));
+    out.series.push_back(line_series("optimum of this scene",
+                                     {out.x.low, out.x.high},
+                                     {replay.optimum, replay.optimum},
+                                     {.ink = Ink::black, .dash = 2, .width = 0.7}));
   }
   out.y.log = true;
-  const double window_s = replay.map.number_or("window_s", kNone);
+  const double window_s = replay.report->window_s;
   set_value_axis(out,
                  std::isfinite(window_s) ? "RMS error in windows of " + duration_text(window_s)
                                          : "RMS error in a window",
@@ -222,7 +219,7 @@ std::vector<std::size_t> drawn_sensors(const ShownReplay& replay,
                                        const std::vector<double>& values,
                                        bool smallest) {
   std::vector<std::size_t> out;
-  refuse_unmatched(options.channels, replay.sensors, replay.file);
+  refuse_unmatched(options.channels, replay.sensors, replay.report->file);
   for (std::size_t i = 0; i < replay.sensors.size(); ++i)
     if (is_wanted(options.channels, replay.sensors[i])) out.push_back(i);
   if (out.size() <= kMostSensors) return out;
@@ -237,23 +234,28 @@ std::vector<std::size_t> drawn_sensors(const ShownReplay& replay,
   return out;
 }
 
+bool has_weights(const ReplayReport::Algorithm& algorithm) {
+  return !algorithm.weights.empty();
+}
+bool has_variances(const ReplayReport::Algorithm& algorithm) {
+  return !algorithm.variances.empty();
+}
+
 Chart sensors_over_time(std::span<const FigureSource> sources,
                         const FigureOptions& options,
                         bool variances) {
   const char* kind = variances ? "variances" : "weights";
   const ShownReplay replay = shown_replay(sources[0], options);
-  const ShownAlgorithm* tracked = tracked_algorithm(replay, options, kind);
-  const Document* held = tracked == nullptr ? nullptr : tracked->map.get(kind);
-  if (held == nullptr)
+  const ReplayReport::Algorithm* tracked =
+      tracked_algorithm(replay, options, variances ? has_variances : has_weights);
+  if (tracked == nullptr || !(variances ? has_variances(*tracked) : has_weights(*tracked)))
     refuse_kind(sources[0],
                 kind,
                 options.algorithm.empty() ? "no method has any" : options.algorithm + " has none");
-  if (held->kind == Document::Kind::list && !held->list.empty() &&
-      held->list[0].kind == Document::Kind::list)
+  if (!variances && tracked->weights.size() > 1)
     refuse_kind(sources[0], kind, "of several inputs there is more than one weight a sensor");
-  const std::vector<double> last = report_numbers(tracked->map, kind);
-  const ReportTrack track =
-      report_track(tracked->map, variances ? "variance_track" : "weight_track");
+  const std::vector<double>& last = variances ? tracked->variances : tracked->weights[0];
+  const Timeline& track = variances ? tracked->variance_track : tracked->weight_track;
   Chart out;
   set_time_axis(out, replay, options);
   add_run_marks(out, replay);
@@ -263,13 +265,9 @@ Chart sensors_over_time(std::span<const FigureSource> sources,
       out.series.push_back(
           track_series(replay.sensors[i], track, i, replay, variances, series_look(i)));
     } else if (i < last.size()) {
-      FigureSeries flat;
-      flat.name = replay.sensors[i];
-      flat.x = {out.x.low, out.x.high};
-      flat.y = {last[i], last[i]};
-      flat.look = series_look(i);
-      flat.look.marker = FigureMarker::none;
-      out.series.push_back(std::move(flat));
+      out.series.push_back(line_series(
+          replay.sensors[i], {out.x.low, out.x.high}, {last[i], last[i]}, series_look(i)));
+      out.series.back().look.marker = FigureMarker::none;
     }
     if (!out.series.empty()) take_series(y, out.series.back(), out.x);
   }
@@ -287,21 +285,19 @@ Chart sensors_over_time(std::span<const FigureSource> sources,
   return out;
 }
 
-std::string fault_note(const MapReader& fault, const std::string& answer) {
-  const std::string kind = fault.text_or("kind", "");
-  const double value = fault.number_or("value", kNone);
-  const bool valueless = kind == "stuck" || kind == "dropout" || !std::isfinite(value);
-  return kind + (valueless ? "" : " " + number_text(value, 3)) +
+std::string fault_note(const ReplayReport::Fault& fault, const std::string& answer) {
+  const bool valueless =
+      fault.kind == "stuck" || fault.kind == "dropout" || !std::isfinite(fault.value);
+  return fault.kind + (valueless ? "" : " " + number_text(fault.value, 3)) +
          (answer.empty() ? "" : ", " + answer);
 }
 
-std::string answer_to(const ShownAlgorithm* tracked, std::size_t fault) {
-  if (tracked == nullptr || !tracked->map.has("answers")) return "";
-  for (const MapReader& answer : tracked->map.maps("answers")) {
-    if (answer.count("fault") != fault) continue;
-    const auto found = answer.maybe_number("found_after_s");
-    if (!found) return "missed";
-    return *found == 0 ? "found at once" : "found after " + duration_text(*found);
+std::string answer_to(const ReplayReport::Algorithm* tracked, std::size_t fault) {
+  if (tracked == nullptr) return "";
+  for (const FaultAnswer& answer : tracked->answers) {
+    if (answer.fault != fault) continue;
+    if (!answer.found_s) return "missed";
+    return *answer.found_s == 0 ? "found at once" : "found after " + duration_text(*answer.found_s);
   }
   return "";
 }
@@ -318,7 +314,8 @@ Chart variances_figure(std::span<const FigureSource> sources, const FigureOption
 
 Chart faults_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   const ShownReplay replay = shown_replay(sources[0], options);
-  const ShownAlgorithm* tracked = tracked_algorithm(replay, options, "faults");
+  const ReplayReport::Algorithm* tracked =
+      tracked_algorithm(replay, options, [](const auto& a) { return a.watches_faults; });
   Chart out;
   set_time_axis(out, replay, options);
   const std::vector<std::size_t> rows = drawn_sensors(replay, options, {}, false);
@@ -327,32 +324,28 @@ Chart faults_figure(std::span<const FigureSource> sources, const FigureOptions& 
         rows.begin(), rows.end(), [&](std::size_t i) { return replay.sensors[i] == sensor; });
     return static_cast<std::size_t>(at - rows.begin());
   };
-  const auto add = [&](const MapReader& fault, FigureBar bar) {
-    bar.row = row_of(fault.text_or("sensor", ""));
-    bar.from = std::max(fault.number("from_s"), replay.start_s) / replay.time_unit_s;
-    bar.to = std::min(fault.number_or("to_s", replay.end_s), replay.end_s) / replay.time_unit_s;
+  const auto add = [&](const ReplayReport::Fault& fault, FigureBar bar) {
+    bar.row = row_of(fault.sensor);
+    bar.from = std::max(fault.from_s, replay.report->start_s) / replay.time_unit_s;
+    bar.to = std::min(fault.to_s, replay.end_s) / replay.time_unit_s;
     if (bar.row < rows.size() && bar.from < bar.to) out.bars.push_back(std::move(bar));
   };
-  std::size_t k = 0;
-  if (replay.map.has("faults"))
-    for (const MapReader& fault : replay.map.maps("faults")) {
-      FigureBar bar{.name = "known to the scene",
-                    .note = fault_note(fault, answer_to(tracked, k)),
-                    .ink = Ink::grey,
-                    .broad = true};
-      add(fault, std::move(bar));
-      ++k;
-    }
-  if (tracked != nullptr && tracked->map.has("faults"))
-    for (const MapReader& found : tracked->map.maps("faults")) {
-      const std::string kind = found.text_or("kind", "");
-      const bool noise = kind == "noise";
-      FigureBar bar{.name = fmt::format("{}, by {}", noise ? "re-weighted" : "out", tracked->label),
-                    .note = kind,
-                    .ink = Ink::blue,
-                    .hollow = noise};
-      add(found, std::move(bar));
-    }
+  const std::vector<ReplayReport::Fault>& known = replay.report->faults;
+  for (std::size_t k = 0; k < known.size(); ++k)
+    add(known[k],
+        {.name = "known to the scene",
+         .note = fault_note(known[k], answer_to(tracked, k)),
+         .ink = Ink::grey,
+         .broad = true});
+  for (const ReplayReport::Fault& found :
+       tracked != nullptr ? tracked->found : std::vector<ReplayReport::Fault>{}) {
+    const bool noise = found.kind == "noise";
+    add(found,
+        {.name = fmt::format("{}, by {}", noise ? "re-weighted" : "out", tracked->label),
+         .note = found.kind,
+         .ink = Ink::blue,
+         .hollow = noise});
+  }
   if (out.bars.empty())
     refuse_kind(sources[0], "faults", "no fault is known to the scene, and none was found");
   for (const std::size_t i : rows) out.y.rows.push_back(replay.sensors[i]);
@@ -368,13 +361,12 @@ Chart error_allan_figure(std::span<const FigureSource> sources, const FigureOpti
   Extent x(true), y(true);
   const auto shown = shown_algorithms(replay, options);
   for (std::size_t k = 0; k < shown.size(); ++k) {
-    const MapReader input = of_input(shown[k]->map, replay);
-    if (!input.has("allan")) continue;
-    const MapReader curve = input.map("allan");
     FigureSeries series;
     series.name = shown[k]->label;
-    series.x = report_numbers(curve, "tau_s");
-    series.y = report_numbers(curve, "deviation", series.x.size());
+    for (const AllanPoint& point : of_input(shown[k]->inputs, replay).allan.points) {
+      series.x.push_back(point.tau_s);
+      series.y.push_back(point.deviation);
+    }
     series.look = series_look(k);
     x.take(series.x);
     y.take(series.y);

@@ -171,6 +171,7 @@ void draw_line(Sheet& sheet, const FigureSeries& s) {
   path.width = s.look.width;
   path.dash = dash_of(s.look.dash);
   path.clipped = true;
+  path.tip = s.tip;
   sheet.drawing.add(std::move(path));
 }
 
@@ -213,9 +214,14 @@ std::vector<Place> outline(FigureMarker marker, const Place& c, double r) {
 
 }  // namespace
 
-void add_marker(Sheet& sheet, const FigureLook& look, const std::vector<Place>& at, bool hollow) {
+void add_marker(Sheet& sheet,
+                const FigureLook& look,
+                const std::vector<Place>& at,
+                bool hollow,
+                const std::string& tip) {
   if (at.empty() || look.marker == FigureMarker::none) return;
   DrawnPath path;
+  path.tip = tip;
   path.stroke = colour_of(look.ink, sheet.grey);
   path.fill = hollow ? Colour{1, 1, 1} : path.stroke;
   path.filled = true;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libchar/core/text/markup.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/figure/detail/drawing.hpp"
 
 namespace libchar {
@@ -22,7 +23,17 @@ std::string hex(const Colour& c) {
   return fmt::format("#{:02x}{:02x}{:02x}", part(c.red), part(c.green), part(c.blue));
 }
 
-std::string looks(const DrawnPath& p) {
+/// Of the frame that is drawn in: names in one page differ.
+std::string frame_name(const std::string& name) {
+  return name.empty() ? "frame" : "frame-" + name;
+}
+
+std::string tip_of(const DrawnPath& p, const std::string& name) {
+  return name.empty() || p.tip.empty() ? ""
+                                       : "<title>" + markup_entities(printable(p.tip)) + "</title>";
+}
+
+std::string looks(const DrawnPath& p, const std::string& name) {
   std::string out = p.filled ? fmt::format(" fill=\"{}\"", hex(p.fill)) : " fill=\"none\"";
   if (p.filled && p.opacity < 1) out += fmt::format(" fill-opacity=\"{}\"", number(p.opacity));
   if (p.stroked) {
@@ -33,11 +44,11 @@ std::string looks(const DrawnPath& p) {
       out += fmt::format(" stroke-dasharray=\"{}\"", dashes);
     }
   }
-  if (p.clipped) out += " clip-path=\"url(#frame)\"";
+  if (p.clipped) out += fmt::format(" clip-path=\"url(#{})\"", frame_name(name));
   return out;
 }
 
-std::string svg_path(const DrawnPath& p) {
+std::string svg_path(const DrawnPath& p, const std::string& name) {
   std::string out;
   if (!p.lines.empty()) {
     std::string d;
@@ -51,10 +62,12 @@ std::string svg_path(const DrawnPath& p) {
                          number(line[i].y));
       if (p.filled) d += "Z";
     }
-    out += fmt::format("<path d=\"{}\"{} stroke-linejoin=\"round\"/>\n", d, looks(p));
+    const std::string tip = tip_of(p, name);
+    out += fmt::format("<path d=\"{}\"{} stroke-linejoin=\"round\"", d, looks(p, name)) +
+           (tip.empty() ? "/>\n" : ">" + tip + "</path>\n");
   }
   if (p.circles.empty()) return out;
-  out += fmt::format("<g{}>\n", looks(p));
+  out += fmt::format("<g{}>{}\n", looks(p, name), tip_of(p, name));
   for (const Place& c : p.circles)
     out += fmt::format(
         "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", number(c.x), number(c.y), number(p.radius));
@@ -95,27 +108,34 @@ std::string svg_text(const DrawnText& t) {
 
 }  // namespace
 
-std::string svg_of(const Drawing& drawing) {
+std::string svg_of(const Drawing& drawing, const std::string& name) {
   const Box& f = drawing.frame;
   std::string about;
   for (const TextRun& run : text_runs(drawing.about)) about += run.text;
-  std::string out = fmt::format(
+  // On a page its style says how large it is.
+  const std::string file = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}pt\" height=\"{1}pt\" viewBox=\"0 0 "
-      "{0} {1}\" "
-      "role=\"img\" font-family=\"'{2}', Arial, Helvetica, sans-serif\">\n<title>{3}</title>\n"
-      "<clipPath id=\"frame\"><rect x=\"{4}\" y=\"{5}\" width=\"{6}\" "
-      "height=\"{7}\"/></clipPath>\n",
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}pt\" height=\"{}pt\"",
       number(drawing.width),
-      number(drawing.height),
-      kFigureFont,
-      markup_entities(about),
-      number(f.left),
-      number(f.top),
-      number(f.right - f.left),
-      number(f.bottom - f.top));
+      number(drawing.height));
+  std::string out =
+      (name.empty() ? file : "<svg") +
+      fmt::format(
+          " viewBox=\"0 0 {0} {1}\" "
+          "role=\"img\" font-family=\"'{2}', Arial, Helvetica, sans-serif\">\n<title>{3}</title>\n"
+          "<clipPath id=\"{8}\"><rect x=\"{4}\" y=\"{5}\" width=\"{6}\" "
+          "height=\"{7}\"/></clipPath>\n",
+          number(drawing.width),
+          number(drawing.height),
+          kFigureFont,
+          markup_entities(about),
+          number(f.left),
+          number(f.top),
+          number(f.right - f.left),
+          number(f.bottom - f.top),
+          frame_name(name));
   for (const DrawnPiece& piece : drawing.pieces)
-    out += piece.is_text ? svg_text(piece.text) : svg_path(piece.path);
+    out += piece.is_text ? svg_text(piece.text) : svg_path(piece.path, name);
   return out + "</svg>\n";
 }
 

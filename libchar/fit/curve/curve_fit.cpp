@@ -240,21 +240,24 @@ double upper_limit(const CurveProblem& problem,
 void say_what_intervals_mean(const Judge& judge, double scatter, NoiseFit& fit) {
   switch (judge.scatter) {
     case Scatter::stated:
-      fit.sentences.push_back(
-          "The intervals rest on the stated uncertainty of the points, taken as independent.");
+      fit.findings.push_back(finding(
+          "curve_uncertainty",
+          "The intervals rest on the stated uncertainty of the points, taken as independent."));
       return;
     case Scatter::from_duration:
-      fit.sentences.push_back(
+      fit.findings.push_back(finding(
+          "curve_uncertainty",
           "The intervals rest on the stated record length: the exact covariance of overlapping "
-          "Allan variances.");
+          "Allan variances."));
       return;
     case Scatter::estimated:
-      fit.sentences.push_back(
+      fit.findings.push_back(finding(
+          "curve_uncertainty",
           fmt::format("The curve states no uncertainty: it was taken as equal relative error at "
                       "every point, {} of the ordinate from the scatter about the fit. "
                       "The intervals say how well the drawn curve fixes the coefficients, not how "
                       "well the record behind it did.",
-                      percent_text(scatter)));
+                      percent_text(scatter))));
       return;
   }
 }
@@ -368,10 +371,11 @@ void report_goodness(const CurveJudgement& found, NoiseFit& fit) {
   fit.goodness.p = estimated ? 1 : chi_square_tail(sum, found.free_points);
   say_what_intervals_mean(found.judge, std::sqrt(found.mean_square) / 2, fit);
   if (!estimated && fit.goodness.p < 1e-3) {
-    fit.sentences.push_back(
+    fit.findings.push_back(finding(
+        "curve_scatter",
         fmt::format("The points scatter {} times more about the model than their uncertainty "
                     "says; the intervals are widened by that.",
-                    brief_text(std::sqrt(found.scale), 2)));
+                    brief_text(std::sqrt(found.scale), 2))));
   }
 }
 
@@ -602,9 +606,11 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
       fit_points(curve, offered, options, whole.goodness.chi2 / std::max(1.0, whole.goodness.dof));
   for (Coefficient& term : misfit.term)
     if (term.value) term.status = Status::misfit;
-  misfit.sentences.push_back(
+  misfit.findings.push_back(finding(
+      "misfit",
       "The noise terms do not describe this curve, nor half of its points, within its uncertainty: "
-      "no coefficient is borne out.");
+      "no coefficient is borne out.",
+      "the noise terms do not describe the curve"));
   return misfit;
 }
 

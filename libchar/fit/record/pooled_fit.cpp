@@ -95,10 +95,11 @@ void without_bounds(NoiseFit& fit) {
     term.seconds_for_10_percent.reset();
     if (term.status != Status::detected || !(term.relative_sd > kWideAbove)) continue;
     term.status = Status::undetermined;
-    fit.sentences.push_back(
-        fmt::format("The runs are too few or too short for {}: it is known to {} (1 sd).",
-                    long_name(static_cast<Term>(t)),
-                    percent_text(term.relative_sd)));
+    fit.findings.push_back(
+        finding("too_short",
+                fmt::format("The runs are too few or too short for {}: it is known to {} (1 sd).",
+                            long_name(static_cast<Term>(t)),
+                            percent_text(term.relative_sd))));
   }
 }
 

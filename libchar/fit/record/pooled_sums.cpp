@@ -2,7 +2,7 @@
 
 #include "libchar/fit/detail/record/record_powers.hpp"
 
-namespace libchar {
+namespace libchar::detail {
 
 void join(MeanPowers& powers, const MeanPowers& later) {
   join(powers.blocks, later.blocks);
@@ -51,4 +51,4 @@ PooledSums read_pooled_sums(std::uint64_t kept, StateReader& from) {
   return sums;
 }
 
-}  // namespace libchar
+}  // namespace libchar::detail

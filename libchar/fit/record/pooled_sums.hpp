@@ -8,7 +8,7 @@
 
 #include "libchar/core/numeric/state_archive.hpp"
 
-namespace libchar {
+namespace libchar::detail {
 
 struct PooledSums {
   std::uint64_t transforms = 0;
@@ -42,4 +42,8 @@ void write_state(const MeanPowers& powers, StateWriter& to);
 /// Of means of `per_mean` samples, which blocks of `block` samples leave something.
 MeanPowers read_mean_powers(std::uint64_t per_mean, std::uint64_t block, StateReader& from);
 
-}  // namespace libchar
+}  // namespace libchar::detail
+
+namespace libchar {
+using namespace detail;
+}

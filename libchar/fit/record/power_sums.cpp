@@ -41,7 +41,7 @@
 #include "libchar/fit/detail/record/record_powers.hpp"
 #include "libchar/spectrum/fft.hpp"
 
-namespace libchar {
+namespace libchar::detail {
 namespace {
 
 constexpr std::uint64_t kSamplesAMean = PowerPart::kBlock / kMeansPerBlock;
@@ -262,7 +262,7 @@ bool PowerPart::take_block(std::span<const double> samples) {
 }
 
 void PowerPart::take_power(std::vector<double> power) {
-  libchar::join(state_->sums.blocks, {0, std::move(power)});
+  join(state_->sums.blocks, {0, std::move(power)});
 }
 
 PowerSums PowerPart::finish(bool last) {
@@ -405,4 +405,4 @@ PowerSums read_power_sums(StateReader& from) {
   return sums;
 }
 
-}  // namespace libchar
+}  // namespace libchar::detail

@@ -14,7 +14,7 @@
 #include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fit/signs/event.hpp"
 
-namespace libchar {
+namespace libchar::detail {
 
 /// Samples between two long gaps of a part, the missing ones closed up; or only missing ones, at
 /// the end of a part.
@@ -80,4 +80,8 @@ std::vector<PooledPower> powers_of(PowerSums sums,
 void write_state(const PowerSums& sums, StateWriter& to);
 PowerSums read_power_sums(StateReader& from);
 
-}  // namespace libchar
+}  // namespace libchar::detail
+
+namespace libchar {
+using namespace detail;
+}

@@ -44,11 +44,12 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
   white.ci95.high = *white.value * std::pow(white.ci95.high / *white.value, wider);
   white.ci95.low = *white.value * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider);
   if (wider > 1.05)
-    fit.sentences.push_back(
+    fit.findings.push_back(finding(
+        "heavy_tails",
         fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences "
                     "{} instead of 3): the interval of N is {} times as wide for it.",
                     brief_text(difference_kurtosis),
-                    brief_text(wider, 2)));
+                    brief_text(wider, 2))));
 }
 
 constexpr std::uint64_t kMeansOfPoint = 8;  ///< from which on terms of a pyramid start often enough
@@ -119,6 +120,16 @@ bool has_step(std::span<const Event> events) {
   });
 }
 
+void report_stationarity(NoiseFit& fit) {
+  const Stationarity& found = fit.stationarity;
+  if (found.steady) return;
+  Finding changed = finding(
+      "not_stationary", found.sentence, "the noise is not the same throughout the recording");
+  if (!found.noticeable) changed.severity = Severity::note;
+  changed.where.time_s = {found.smallest_s, found.largest_s};
+  fit.findings.push_back(std::move(changed));
+}
+
 NoiseFit fit_whole(std::span<const double> record,
                    double rate_hz,
                    const AllanCurve* allan,
@@ -157,7 +168,7 @@ NoiseFit fit_whole(std::span<const double> record,
   add_spike_answer(despiked.answer, fit);
   if (options.remedies && options.stationarity) {
     fit.stationarity = test_stationarity(data, rate_hz, fit);
-    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+    report_stationarity(fit);
   }
   return fit;
 }
@@ -192,7 +203,7 @@ NoiseFit fit_sums(RecordSums sums,
   add_spike_answer(answer, fit);
   if (options.remedies && options.stationarity) {
     fit.stationarity = test_stationarity(used, events, rate_hz, fit);
-    if (!fit.stationarity.steady) fit.sentences.push_back(fit.stationarity.sentence);
+    report_stationarity(fit);
   }
   return fit;
 }

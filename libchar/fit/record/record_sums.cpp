@@ -13,7 +13,7 @@
 #include "libchar/fit/detail/band/bridge.hpp"
 #include "libchar/fit/remedies.hpp"
 
-namespace libchar {
+namespace libchar::detail {
 
 // A leaf is a binary tree of pieces of 2^14 samples, whose Allan sums are joined upwards: each node
 // gives the octaves that fit it sixteen times and its halves do not. As a record grows, the
@@ -71,7 +71,7 @@ AllanSums sums_of_pieces(std::span<const double> leaf, PieceVariances& pieces) {
     const Node later = std::move(nodes.back());
     nodes.pop_back();
     nodes.back().samples += later.samples;
-    libchar::join(nodes.back().sums, later.sums);
+    join(nodes.back().sums, later.sums);
   };
   for (std::span<const double> rest = leaf; !rest.empty();) {
     const std::span<const double> piece =
@@ -129,10 +129,10 @@ constexpr std::uint64_t kSettledHeight = 9;  ///< of nodes whose means are settl
 constexpr std::uint64_t kPerMean = 32;       ///< as many means of a leaf as a search looks at
 
 void join(FittedSums& sums, FittedSums later) {
-  libchar::join(sums.allan, later.allan);
-  libchar::join(sums.bins, std::move(later.bins));
+  join(sums.allan, later.allan);
+  join(sums.bins, std::move(later.bins));
   sums.means.join(std::move(later.means));
-  libchar::join(sums.pieces, later.pieces);
+  join(sums.pieces, later.pieces);
 }
 
 void add_count(const SpikeCount& later, SpikeCount& count) {
@@ -176,9 +176,9 @@ void spikes_layout(Archive& at, Count& n) {
 
 struct RecordStage {
   using Sums = RecordSums;
-  void join(RecordSums& sums, RecordSums later) { libchar::join(sums, std::move(later)); }
+  void join(RecordSums& sums, RecordSums later) { detail::join(sums, std::move(later)); }
   void settle(RecordSums& sums, std::uint64_t height, std::uint64_t first_leaf) {
-    libchar::settle(sums, height, first_leaf);
+    detail::settle(sums, height, first_leaf);
   }
 };
 
@@ -258,4 +258,4 @@ RecordSums read_record_sums(StateReader& from) {
   return sums;
 }
 
-}  // namespace libchar
+}  // namespace libchar::detail

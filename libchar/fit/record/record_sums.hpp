@@ -15,7 +15,7 @@
 #include "libchar/fit/signs/spike_cleaner.hpp"
 #include "libchar/spectrum/welch_sums.hpp"
 
-namespace libchar {
+namespace libchar::detail {
 
 // The Allan variance of the pieces of a record at every octave that fits a piece sixteen times: is
 // it the same throughout?
@@ -84,4 +84,8 @@ RecordSums record_sums(std::span<const double> record, bool remedies);
 void write_state(const RecordSums& sums, StateWriter& to);
 RecordSums read_record_sums(StateReader& from);
 
-}  // namespace libchar
+}  // namespace libchar::detail
+
+namespace libchar {
+using namespace detail;
+}

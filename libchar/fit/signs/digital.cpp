@@ -126,27 +126,30 @@ std::string with_unit(double value, std::string_view unit) {
 
 void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view unit) {
   for (const Rail& rail : faults.rails)
-    faults.sentences.push_back(
-        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
-                    "comes out too small.",
-                    percent_text(rail.share),
-                    rail.high ? "largest" : "smallest",
-                    with_unit(rail.value, unit)));
+    faults.findings.push_back(
+        finding("rail",
+                fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
+                            "comes out too small.",
+                            percent_text(rail.share),
+                            rail.high ? "largest" : "smallest",
+                            with_unit(rail.value, unit))));
   if (faults.held)
-    faults.sentences.push_back(
+    faults.findings.push_back(finding(
+        "held_values",
         fmt::format("Each value is recorded {} times on average: the sensor gives {} Hz where the "
                     "log has {} Hz.",
                     number_text(faults.held->times, 3),
                     number_text(faults.held->sensor_rate_hz, 4),
-                    number_text(rate_hz, 4)));
+                    number_text(rate_hz, 4))));
   if (faults.staircase)
-    faults.sentences.push_back(
+    faults.findings.push_back(finding(
+        "staircase",
         fmt::format("The noise between samples, {}{}, is below the converter's step of {}: {}",
                     faults.staircase->bounded ? "at most " : "",
                     with_unit(faults.staircase->noise, unit),
                     with_unit(faults.staircase->step, unit),
                     faults.staircase->bounded ? "what is measured is the rounding."
-                                              : "the rounding is part of what is measured."));
+                                              : "the rounding is part of what is measured.")));
 }
 
 }  // namespace
@@ -283,10 +286,12 @@ void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
     if (white.value) white.ci95 = {0, std::max(white.ci95.high, most)};
     if (white.upper95) white.upper95 = std::max(*white.upper95, most);
   }
-  fit.sentences.push_back(fmt::format(
-      "No coefficient can be trusted, however well the curves agree: they are those of the "
-      "{}, not of the noise.",
-      rounding ? "converter's rounding" : "clipped samples"));
+  fit.findings.push_back(finding(
+      "digital_misfit",
+      fmt::format(
+          "No coefficient can be trusted, however well the curves agree: they are those of the "
+          "{}, not of the noise.",
+          rounding ? "converter's rounding" : "clipped samples")));
 }
 
 }  // namespace libchar

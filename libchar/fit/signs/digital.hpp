@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/state_archive.hpp"
 #include "libchar/fit/fit_result.hpp"
 
@@ -38,7 +39,7 @@ struct DigitalFaults {
   std::vector<Rail> rails;
   std::optional<HeldValues> held;
   std::optional<Staircase> staircase;
-  std::vector<std::string> sentences;
+  std::vector<Finding> findings;
 };
 
 /// Extremes of a record, how often it is at them, and how often it repeats a value.

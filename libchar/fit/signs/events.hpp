@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/fit/record/noise_powers.hpp"
 #include "libchar/fit/signs/event.hpp"
 #include "libchar/fit/signs/event_series.hpp"
@@ -31,9 +32,9 @@ struct EventSearch {
   std::vector<double>
       power;  ///< the noise they were found against: E c_k^2 of the series without them
   std::optional<Telegraph> telegraph;
-  int spent = 0;                       ///< degrees of freedom that the events took from the noise
-  bool more = false;                   ///< stopped at `most` with more to find
-  std::vector<std::string> sentences;  ///< one an event, in the unit given
+  int spent = 0;                  ///< degrees of freedom that the events took from the noise
+  bool more = false;              ///< stopped at `most` with more to find
+  std::vector<Finding> findings;  ///< one for each event, in the unit given
 };
 
 /// Searches a series; at least 64 values, Error(numeric) below.

@@ -33,6 +33,8 @@ constexpr double kLoudest = 4;  ///< factor up to which it is
 constexpr double kRepeats =
     0.3;  ///< share of repeated values: a staircase, whose steps come and go
 constexpr std::size_t kFewestBlocks = 64;
+constexpr double kHarmless =
+    1.01;  ///< motion that adds less to the scatter stays inside most intervals
 
 /// Logarithms of the activities, a block each.
 struct Activity {
@@ -270,15 +272,18 @@ std::string change_sentence(const StrengthChange& change) {
 
 void describe(Motion& motion, double duration_s) {
   if (motion.whole) {
-    motion.sentences.emplace_back(
+    motion.findings.push_back(finding(
+        "moves_throughout",
         "What is recorded changes throughout (motion, where the sensor is an inertial one): it is "
-        "a signal and no noise.");
+        "a signal and no noise."));
     return;
   }
   if (!motion.moving_s.empty()) {
     double moving = 0;
     for (const Interval& stretch : motion.moving_s) moving += stretch.high - stretch.low;
-    motion.sentences.push_back(
+    const std::size_t count = motion.moving_s.size();
+    Finding moved = finding(
+        "motion",
         fmt::format("The sensor was moved or shaken in {} stretch{} ({} of {}), the first from "
                     "{} to {} s; the longest "
                     "still stretch is {} to {} s.",
@@ -289,10 +294,53 @@ void describe(Motion& motion, double duration_s) {
                     place_text(motion.moving_s[0].low),
                     place_text(motion.moving_s[0].high),
                     place_text(motion.still_s ? motion.still_s->low : 0),
-                    place_text(motion.still_s ? motion.still_s->high : 0)));
+                    place_text(motion.still_s ? motion.still_s->high : 0)),
+        fmt::format("moved or shaken in {}",
+                    count == 1 ? "a stretch" : fmt::format("{} stretches", count)));
+    moved.count = count;
+    moved.where.time_s = motion.moving_s;
+    if (motion.louder > kHarmless) {
+      moved.severity = Severity::bad;
+      moved.effects = {{Affected::noise, Direction::too_large, motion.louder}};
+    }
+    moved.help.push_back({"Use the longest still stretch.", {{"still", "auto"}}});
+    motion.findings.push_back(std::move(moved));
   }
-  for (const StrengthChange& change : motion.changes)
-    motion.sentences.push_back(change_sentence(change));
+  if (motion.changes.empty()) return;
+  const StrengthChange& first = motion.changes[0];
+  Finding changed =
+      finding("strength_change",
+              "",
+              motion.changes.size() == 1
+                  ? fmt::format("the noise is {} times as strong from {} s on",
+                                brief_text(first.factor),
+                                place_text(first.at_s))
+                  : fmt::format("the noise changes its strength {} times", motion.changes.size()));
+  for (const StrengthChange& change : motion.changes) {
+    changed.sentence += (changed.sentence.empty() ? "" : " ") + change_sentence(change);
+    changed.where.time_s.push_back(change.at_ci95);
+  }
+  changed.count = motion.changes.size();
+  motion.findings.push_back(std::move(changed));
+}
+
+/// What motion adds to the scatter of all blocks, by what the still ones have.
+double louder_by_motion(const Activity& activity, const std::vector<char>& moving) {
+  double most = 1;
+  for (const std::vector<double>* logs :
+       {&activity.fine, &activity.coarse[0], &activity.coarse[1]}) {
+    double all = 0, still = 0, count = 0;
+    for (std::size_t b = 0; b < moving.size(); ++b) {
+      const double power = std::exp(2 * (*logs)[b]);
+      all += power;
+      if (moving[b] != 0) continue;
+      still += power;
+      ++count;
+    }
+    if (count > 0 && still > 0)
+      most = std::max(most, std::sqrt(all / static_cast<double>(moving.size()) * count / still));
+  }
+  return most;
 }
 
 /// The longest run that is still, on the record's clock.
@@ -327,6 +375,7 @@ Motion find_motion(const EventSeries& series) {
     for (const Run& run : runs_of(*moving, 1))
       motion.moving_s.push_back({series.start_s + static_cast<double>(run.from) * block_s,
                                  series.start_s + static_cast<double>(run.to) * block_s});
+    motion.louder = louder_by_motion(activity, *moving);
     motion.still_s = longest_of(runs_of(*moving, 0), moving->size(), series, block_s);
     if (std::count(moving->begin(), moving->end(), 0) >= static_cast<std::ptrdiff_t>(kFewestBlocks))
       motion.changes = changes_of(activity, *moving, series.start_s, block_s);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/fit/signs/event.hpp"
 #include "libchar/fit/signs/event_series.hpp"
@@ -27,11 +28,13 @@ struct StrengthChange {
 struct Motion {
   bool tested =
       false;  ///< no: too short (2048 values are needed), or most values repeat the one before
-  bool whole = false;                   ///< in motion throughout: no stretch to compare with
-  std::vector<Interval> moving_s;       ///< stretches of motion or handling
-  std::optional<Interval> still_s;      ///< the longest stretch without
+  bool whole = false;               ///< in motion throughout: no stretch to compare with
+  std::vector<Interval> moving_s;   ///< stretches of motion or handling
+  std::optional<Interval> still_s;  ///< the longest stretch without
+  /// The standard deviation of differences (the largest of three widths) over that of the still stretches alone.
+  double louder = 1;
   std::vector<StrengthChange> changes;  ///< of what is left
-  std::vector<std::string> sentences;
+  std::vector<Finding> findings;
 };
 
 /// Searches a series as `event_series` makes it. A record of noise alone has motion or a change in less than one of a hundred cases.

@@ -10,7 +10,10 @@
 namespace libchar {
 
 struct Event;
+namespace detail {
 struct FittedSums;
+}
+using namespace detail;
 struct NoiseFit;
 
 /// How much the Allan deviation at one averaging time differs between stretches of a record.

@@ -67,7 +67,7 @@ class ArrayTables final : public TopicReader {
   void select(std::size_t topic,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
-              std::int64_t unit_ns) override {
+              StampUnit unit) override {
     const ArrayTable& table = plan_.tables[topic];
     table_ = &table;
     std::map<std::size_t, std::vector<std::uint64_t>> columns;
@@ -90,7 +90,7 @@ class ArrayTables final : public TopicReader {
     if (time) time_ = reading_of(table.fields[*time]);
     if (time) time_name_ = table.topic.fields[*time].name;
     for (const std::size_t i : fields) names_.push_back(table.topic.fields[i].name);
-    unit_ns_ = unit_ns;
+    unit_ = unit;
   }
 
   bool next(RowBlock& block, std::size_t most, Warnings& warnings) override {
@@ -133,7 +133,7 @@ class ArrayTables final : public TopicReader {
     block.time_ns.resize(block.rows);
     read_stamps(first_of(array, *time_),
                 array.pieces[time_->piece].stride,
-                {time_->field.number, 1, 0, unit_ns_},
+                {time_->field.number, 1, -unit_.zero, unit_.ns},
                 block.time_ns,
                 [this](std::size_t i) {
                   return fmt::format(
@@ -170,7 +170,7 @@ class ArrayTables final : public TopicReader {
   std::optional<Reading> time_;
   std::string time_name_;
   std::vector<std::string> names_;
-  std::int64_t unit_ns_ = 1;
+  StampUnit unit_{1};
   std::uint64_t row_ = 0, most_ = 1;
 };
 

@@ -39,7 +39,7 @@ class BinaryRows final : public RowSource {
       : file_(std::move(file)),
         layout_(std::move(layout)),
         info_(std::move(info)),
-        overflow_as_missing_(options.overflow_as_missing),
+        overflow_as_missing_(options.missing.overflow),
         hash_(*file_, options.hash) {
     info_.file = file_->path();
     const TableFront table = front();
@@ -60,7 +60,7 @@ class BinaryRows final : public RowSource {
     if (time) {
       time_ = layout_.columns[*time];
       info_.time.column = time_->name;
-      nanoseconds_ = find_time_unit(table, *time, options, info_);
+      unit_ = find_time_unit(table, *time, options, info_);
       row_bytes += size_of(time_->number.type);
     }
     if (!layout_.column_major) row_bytes = layout_.columns.front().stride;
@@ -261,7 +261,7 @@ class BinaryRows final : public RowSource {
     const std::byte* first = locate(*time_, block.rows);
     read_stamps(first,
                 static_cast<std::size_t>(time_->stride),
-                {time_->number, time_->scale, time_->offset, nanoseconds_},
+                {time_->number, time_->scale, time_->offset - unit_.zero, unit_.ns},
                 block.time_ns,
                 [this](std::size_t i) {
                   return fmt::format("{} {}", file_->path(), place_of(*time_, next_row_ + i));
@@ -273,7 +273,7 @@ class BinaryRows final : public RowSource {
   LogInfo info_;
   std::vector<Wanted> values_;
   std::optional<BinaryColumn> time_;
-  std::int64_t nanoseconds_ = 1;
+  StampUnit unit_{1};
   std::size_t rows_per_block_ = 1, rows_in_file_block_ = 0;
   std::uint64_t next_row_ = 0, end_row_ = 0, bytes_read_ = 0;
   std::vector<std::byte> bytes_;

@@ -288,7 +288,7 @@ class CsvSource final : public RowSource {
     ParsedChunk& chunk = current_;
     chunk.rows.first_line = next_line_;
     chunk_line_ = next_line_;
-    if (dialect_.clock_only) pass_midnight(chunk.rows);
+    if (dialect_.clock_period_ns > 0) pass_midnight(chunk.rows);
     collect(blank_, chunk.blank);
     collect(comment_, chunk.comment);
     collect(repeated_, chunk.repeated);
@@ -322,12 +322,12 @@ class CsvSource final : public RowSource {
     total_.add(chunk.account);
   }
 
-  // A time of day begins again at midnight.
+  // A time of day begins again at midnight, one without hours every hour.
   void pass_midnight(RowBlock& rows) {
-    constexpr std::int64_t kDay = std::int64_t{86400} * 1000000000;
+    const std::int64_t period = dialect_.clock_period_ns;
     for (std::size_t i = 0; i < rows.rows; ++i) {
       std::int64_t& stamp = rows.time_ns[i];
-      if (stamp + days_ns_ < last_clock_ns_ - kDay / 2) days_ns_ += kDay;
+      if (stamp + days_ns_ < last_clock_ns_ - period / 2) days_ns_ += period;
       stamp += days_ns_;
       last_clock_ns_ = stamp;
     }

@@ -86,11 +86,11 @@ class DataflashReader final : public TopicReader {
   void select(std::size_t topic,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
-              std::int64_t unit_ns) override {
+              StampUnit unit) override {
     topic_ = topic;
     chosen_ = fields;
     time_ = time;
-    unit_ns_ = unit_ns;
+    unit_ns_ = unit.ns;
     begin();
   }
 

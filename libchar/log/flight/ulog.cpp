@@ -94,11 +94,11 @@ class UlogReader final : public TopicReader {
   void select(std::size_t topic,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
-              std::int64_t unit_ns) override {
+              StampUnit unit) override {
     topic_ = topic;
     chosen_ = fields;
     time_ = time;
-    unit_ns_ = unit_ns;
+    unit_ns_ = unit.ns;
     walk_.emplace(file_, block_bytes_, header_.stretches, log_.sizes, losses_again_);
     walk_->go_to(log_.contents[topic].first_byte);
   }

@@ -187,7 +187,7 @@ class Db3Reader final : public MessageTopics {
       what = fmt::format("ends at byte {}, inside the header of a database", bytes_);
       hint = "copy it again";
     } else if (const Warning* cut = found_early().find("cut_end")) {
-      what = fmt::format("holds no table of rosbag2 (topics, messages): {}", cut->message);
+      what = fmt::format("holds no table of rosbag2 (topics, messages): {}", cut->sentence);
       hint = "copy it again";
     }
     throw Error({ErrorKind::input, "E0446", path, std::move(what), "", std::move(hint)});

@@ -89,12 +89,12 @@ class Rosbag2Reader final : public TopicReader {
   void select(std::size_t topic,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
-              std::int64_t unit_ns) override {
+              StampUnit unit) override {
     selected_ = true;
     topic_ = topic;
     fields_ = fields;
     time_ = time;
-    unit_ns_ = unit_ns;
+    unit_ = unit;
   }
 
   bool next(RowBlock& block, std::size_t most, Warnings& warnings) override {
@@ -231,7 +231,7 @@ class Rosbag2Reader final : public TopicReader {
         here_.push_back(c);
         chosen_.push_back(*field);
       }
-    reader_->select(topic, chosen_, time, unit_ns_);
+    reader_->select(topic, chosen_, time, unit_);
   }
 
   void close_part(Warnings& warnings) {
@@ -255,11 +255,11 @@ class Rosbag2Reader final : public TopicReader {
   void add(const Warnings& found, Warnings& warnings) const {
     const std::string name = name_of(parts_[at_].file);
     for (const Warning& one : found.list()) {
-      const std::uint64_t places = one.places.size();
-      for (const std::string& place : one.places)
-        warnings.add(one.code, one.message, place.empty() ? name : name + ", " + place);
+      const std::uint64_t places = one.where.rows.size();
+      for (const std::string& place : one.where.rows)
+        warnings.add(one.code, one.sentence, place.empty() ? name : name + ", " + place);
       if (one.count > places)
-        warnings.add(one.code, one.message, places == 0 ? name : "", one.count - places);
+        warnings.add(one.code, one.sentence, places == 0 ? name : "", one.count - places);
     }
   }
 
@@ -274,7 +274,7 @@ class Rosbag2Reader final : public TopicReader {
   std::size_t topic_ = 0;
   std::vector<std::size_t> fields_;
   std::optional<std::size_t> time_;
-  std::int64_t unit_ns_ = 1;
+  StampUnit unit_{1};
 
   std::size_t next_part_ = 0, at_ = 0;
   std::unique_ptr<TopicReader> reader_;     // of the part that is read

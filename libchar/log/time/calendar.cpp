@@ -3,8 +3,11 @@
 
 #include "libchar/log/time/calendar.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
+#include <string>
 
 #include "libchar/core/text/text.hpp"
 
@@ -175,7 +178,7 @@ std::int64_t second_fraction(DateScanner& at) {
   return ns;
 }
 
-// "12:00", "12:00:00.123", "12:00:00:123", "3:04:05 PM", "120000.5"
+// "12:00", "12:00:00.123", "12:00:00:123", "3:04:05 PM", "120000.5", and "59:58.0" without an hour
 bool clock_time(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   const bool compact = out.date && (s.digits_ahead() == 6 || s.digits_ahead() == 4);
@@ -186,6 +189,13 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
   if (!minute) return false;
   int second = 0;
   std::int64_t part = 0;
+  if (!compact && !out.date && (s.peek() == '.' || s.peek() == ',') && decimal_digit(s.peek(1))) {
+    s.rest.remove_prefix(1);
+    out.of_hour = out.clock = true;
+    out.ns = *hour * kMinuteNs + *minute * kSecondNs + second_fraction(s);
+    at = s;
+    return *hour < 60 && *minute < 60;
+  }
   if (compact ? with_seconds : s.peek() == ':') {
     if (!compact) s.take(':');
     if (s.digits_ahead() < 2 || (!compact && s.digits_ahead() > 2)) return false;
@@ -262,6 +272,22 @@ std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder orde
   return out;
 }
 
+namespace {
+
+/// The longest step between two stamps of a log, either way.
+std::int64_t longest_step(const std::vector<std::string_view>& texts, DateOrder order) {
+  std::int64_t longest = 0;
+  std::optional<std::int64_t> last;
+  for (const std::string_view text : texts)
+    if (const auto stamp = read_calendar(text, order)) {
+      if (last) longest = std::max(longest, std::abs(stamp->ns - *last));
+      last = stamp->ns;
+    }
+  return longest;
+}
+
+}  // namespace
+
 DateStyle date_style(const std::vector<std::string_view>& texts, bool european) {
   bool point = false, american = false, seen = false;
   for (const std::string_view text : texts)
@@ -275,6 +301,10 @@ DateStyle date_style(const std::vector<std::string_view>& texts, bool european) 
       american = american || stamp->half_days || stamp->separator == '/';
     }
   if (!seen) return {};
+  const std::int64_t by_day = longest_step(texts, DateOrder::day_first),
+                     by_month = longest_step(texts, DateOrder::month_first);
+  if (by_day < by_month / 4) return {DateOrder::day_first, true};
+  if (by_month < by_day / 4) return {DateOrder::month_first, true};
   if (point) return {DateOrder::day_first, false};
   return {american && !european ? DateOrder::month_first : DateOrder::day_first, true};
 }

@@ -19,6 +19,7 @@ struct CalendarStamp {
   bool date = false, clock = false, zone = false;
   bool order_said = true;     ///< the year stands first, or the month is a word
   bool half_days = false;     ///< AM or PM is written
+  bool of_hour = false;       ///< minutes and seconds alone, "59:58.0"
   char separator = 0;         ///< between the numbers of the date, 0 for none
   int first = 0, second = 0;  ///< of a date whose order is not said
 };
@@ -34,7 +35,8 @@ struct DateStyle {
   bool ambiguous = false;  ///< could be either: a guess
 };
 
-/// From the first stamps: a number above 12 decides, then the signs ('.' is European, AM and PM and '/' American).
+/// From the first stamps: a number above 12 decides, then the order in which no two of them lie apart by
+/// more than four times as far as in the other one, then the signs ('.' is European, AM and PM and '/' American).
 /// `european` is what else the log looks like (decimal commas).
 DateStyle date_style(const std::vector<std::string_view>& texts, bool european);
 

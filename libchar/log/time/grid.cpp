@@ -15,8 +15,6 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kLearn = 1025;    // rows whose stamps decide on dt
-constexpr std::size_t kStaging = 8192;  // rows assembled where the grid is irregular
 constexpr std::size_t kTogether = 256;  // rows whose stamps are looked at together
 
 /// All n stamps are `shortest` (>= 1) to `longest` after the one before.
@@ -40,55 +38,6 @@ LIBCHAR_WIDE_LANES bool steps_between(std::int64_t before,
 }
 
 }  // namespace
-
-void GridOutput::begin(const LogInfo& so_far) {
-  staging_.resize(so_far.channels.size());
-  sink_.begin(so_far);
-}
-
-void GridOutput::rows(const RowBlock& block, std::size_t from, std::size_t to) {
-  if (from >= to) return;
-  const std::size_t rows = to - from;
-  if (rows >= 1024) {
-    flush();
-    std::vector<const double*> channels;
-    for (const auto& column : block.columns) channels.push_back(column.data() + from);
-    deliver(channels, rows);
-    return;
-  }
-  for (std::size_t c = 0; c < staging_.size(); ++c) {
-    staging_[c].resize(staged_);
-    staging_[c].insert(staging_[c].end(),
-                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(from),
-                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(to));
-  }
-  staged_ += rows;
-  if (staged_ >= kStaging) flush();
-}
-
-void GridOutput::missing(std::uint64_t count) {
-  while (count > 0) {
-    const std::size_t n = static_cast<std::size_t>(std::min<std::uint64_t>(count, kStaging));
-    staged_ += n;
-    for (auto& column : staging_) column.resize(staged_, kMissing);
-    if (staged_ >= kStaging) flush();
-    count -= n;
-  }
-}
-
-void GridOutput::flush() {
-  if (staged_ == 0) return;
-  std::vector<const double*> channels;
-  for (const auto& column : staging_) channels.push_back(column.data());
-  deliver(channels, staged_);
-  staged_ = 0;
-  for (auto& column : staging_) column.clear();
-}
-
-void GridOutput::deliver(const std::vector<const double*>& channels, std::size_t rows) {
-  sink_.block({delivered_, rows, channels});
-  delivered_ += rows;
-}
 
 TimeGrid::TimeGrid(const RowSource& source,
                    const ReadOptions& options,
@@ -116,13 +65,17 @@ bool TimeGrid::push(RowBlock& block) {
   Pending item;
   item.rows_before = counts_.rows;
   counts_.rows += block.rows;
-  waiting_ += block.rows;
   std::swap(item.block, block);
+  if (stamped_ && !own_rows_.decided()) own_rows_.decide(item.block);
   if (!spare_.empty()) {
     block = std::move(spare_.back());
     spare_.pop_back();
   }
   pending_.push_back(std::move(item));
+  if (own_rows_.apart())
+    for (Pending& waiting : pending_) leave_out_blank(waiting);
+  waiting_ = 0;
+  for (const Pending& waiting : pending_) waiting_ += waiting.block.rows - waiting.done;
   process(false);
   return !window_.over;
 }
@@ -150,145 +103,83 @@ void TimeGrid::process(bool end) {
     waiting_ = 0;
     return;
   }
-  if (!learned_) {
-    if (waiting_ < kLearn && !end) return;
-    if (waiting_ == 0) return;
-    learn();
-  }
   const std::size_t ahead = end ? 0 : kRowsAhead;
-  while (waiting_ > ahead && !window_.over) {
+  while ((learned_ || ready(end)) && waiting_ > ahead && !window_.over) {
+    if (!learned_) learn();
     Pending& front = pending_.front();
     const std::size_t count =
         std::min<std::size_t>(front.block.rows - front.done, waiting_ - ahead);
-    process_rows(front, count);
-    front.done += count;
-    waiting_ -= count;
+    const std::size_t taken = process_rows(front, count);
+    front.done += taken;
+    waiting_ -= taken;
     if (front.done == front.block.rows) {
-      end_of_block_ = place(front, front.block.rows - 1);
+      if (front.block.rows > 0) last_.end_of_block = place(front, front.block.rows - 1);
       if (spare_.size() < 4) spare_.push_back(std::move(front.block));
       pending_.pop_front();
     }
   }
 }
 
-void TimeGrid::learn() {
-  learned_ = true;
-  std::vector<std::int64_t> stamps;
-  for (const Pending& item : pending_)
-    for (std::size_t i = 0; i < item.block.rows && stamps.size() < kLearn; ++i)
-      stamps.push_back(checked(item, i, item.block.time_ns[i]));
-  const FirstInterval found = first_interval(stamps, options_.rate_hz);
-  step_.ns = found.ns;
-  step_.coarse = found.pattern != StampPattern::steps;
-  step_.longest = static_cast<std::int64_t>(std::min(found.longest_step, 9e18));
-  const auto whole = static_cast<std::int64_t>(std::min(step_.ns, 9e18));
-  step_.shortest =
-      std::max<std::int64_t>(1, whole - whole / 4);  // three quarters of it, rounded up
-  if (step_.ns == 0 && stamps.size() > 1) {
-    const Pending* item = &pending_.front();
-    std::size_t row = 1;
-    if (item->block.rows < 2) {
-      item = &pending_[1];
-      row = 0;
-    }
-    const bool equal =
-        std::all_of(stamps.begin(), stamps.end(), [&](std::int64_t s) { return s == stamps[0]; });
-    fail(*item,
-         row,
-         "E0315",
-         equal ? "no time axis: all stamps are equal" : "no time axis: the stamps never rise",
-         "`time_column` none and `rate_hz` HZ ignore the stamps");
-  }
-  say_pattern(found);
-  begin();
-}
-
-void TimeGrid::say_pattern(const FirstInterval& found) {
-  const double step_hz = 1e9 / found.step_ns, span_hz = 1e9 / found.span_ns;
-  switch (found.pattern) {
-    case StampPattern::steps:
-      return;
-    case StampPattern::equal:
-      warnings_.add("coarse_stamps",
-                    "the clock is too coarse to tell rows apart (many equal stamps): rows are kept "
-                    "and spaced evenly");
-      return;
-    case StampPattern::coarse:
-      warnings_.add("coarse_stamps",
-                    fmt::format("the stamps are rounded to a coarse clock and keep to one line at "
-                                "{} Hz: rows are spaced evenly (`rate_hz` {} takes the "
-                                "longer steps as gaps)",
-                                brief_text(span_hz, 5),
-                                shortest(rounded(step_hz, 5))));
-      return;
-    case StampPattern::packets:
-      warnings_.add("packets",
-                    fmt::format("the stamps are those of packets: rows are spaced evenly at "
-                                "{} Hz, rows over time (`rate_hz` {}, the rate inside a "
-                                "packet, takes the rest as gaps)",
-                                brief_text(span_hz, 5),
-                                shortest(rounded(step_hz, 5))));
-      return;
-    case StampPattern::disputed:
-      fail(pending_.front(),
-           0,
-           "E0324",
-           fmt::format("two sampling rates: most stamps follow each other at {} Hz, rows over "
-                       "time give {} Hz, and gaps do not explain it",
-                       brief_text(step_hz, 5),
-                       brief_text(span_hz, 5)),
-           fmt::format("`rate_hz` {} or `rate_hz` {} decides",
-                       shortest(rounded(step_hz, 5)),
-                       shortest(rounded(span_hz, 5))));
-  }
-}
-
 // Rows whose stamps all follow each other as they should are taken together; a run of them goes to
-// the sink without being copied.
-void TimeGrid::process_rows(Pending& front, std::size_t count) {
-  const std::size_t stop = front.done + count;
-  std::size_t run = front.done;
-  for (std::size_t from = front.done; from < stop; from += kTogether) {
+// the sink without being copied. Says how many rows it took: not all where the window begins among
+// them.
+std::size_t TimeGrid::process_rows(Pending& front, std::size_t count) {
+  const std::size_t begin = front.done, stop = begin + count;
+  std::size_t run = begin, end = stop;
+  for (std::size_t from = begin; from < stop; from += kTogether) {
     const std::size_t to = std::min(stop, from + kTogether);
     if (take_regular(front.block.time_ns.data() + from, to - from)) continue;
-    const auto ahead = static_cast<std::size_t>(waiting_) - (from - front.done);
-    if (!take_one_by_one(front, from, to, ahead, run)) {
-      run = stop;
-      break;
-    }
+    const auto ahead = static_cast<std::size_t>(waiting_) - (from - begin);
+    const std::size_t taken = take_one_by_one(front, from, to, ahead, run);
+    if (taken == to) continue;
+    end = window_.over ? stop : taken;
+    if (window_.over) run = stop;
+    break;
   }
-  output_.rows(front.block, std::min(run, stop), stop);
+  output_.rows(front.block, std::min(run, end), end);
+  return end - begin;
 }
 
 /// False, and nothing is taken, when one of the rows needs a decision.
 bool TimeGrid::take_regular(const std::int64_t* time, std::size_t n) {
-  if (!last_.any || last_.wrap != 0 || odd_.times != 0) return false;
+  if (!last_.any || last_.wrap != 0) return false;
   if (!steps_between(last_.stamp, time, n, step_.shortest, step_.longest)) return false;
   // They rise: the last is the furthest.
   if (time[n - 1] >= kMostNs || time[n - 1] - last_.first > kMostNs) return false;
   if (time[0] - last_.first < window_.from_ns || time[n - 1] - last_.first >= window_.to_ns)
     return false;
-  backward_.in_a_row = 0;
+  if (!window_.begun) return false;
+  if (backward_.in_a_row > 0) backward_ = {};
   sketch_.add_run(last_.index + 1, time, n);
+  recent_.push(time, n);
   last_.index += static_cast<std::int64_t>(n);
+  last_.row += static_cast<std::int64_t>(n);
   last_.as_read = last_.stamp = time[n - 1];
   if (!start_ns_) start_ns_ = time[0];
   counts_.used += n;
   return true;
 }
 
-/// Rows [from, to), of which those from `run` on are not passed on yet; false when the window ends
-/// among them.
-bool TimeGrid::take_one_by_one(
+/// Rows [from, to), of which those from `run` on are not passed on yet. Says where it ended: in front
+/// of the window's first row, whose interval is to be learnt, or of the first one behind the window.
+std::size_t TimeGrid::take_one_by_one(
     Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run) {
   const std::int64_t* const time = front.block.time_ns.data();
   for (std::size_t i = from; i < to; ++i) {
     std::int64_t stamp = 0;
     if (__builtin_add_overflow(time[i], last_.wrap, &stamp)) stamp = INT64_MAX;
     stamp = checked(front, i, stamp);
+    if (!window_.begun && last_.any && stamp - last_.first >= window_.from_ns) {
+      learned_ = false;
+      return i;
+    }
     const std::int64_t step = last_.any ? stamp - last_.stamp : 0;
-    const bool regular = step > 0 && step <= step_.longest;
-    if (!regular) {
+    if (last_.any && !step_.coarse && step > 0 && (step < step_.shortest || step > step_.longest) &&
+        watch_.add(static_cast<std::uint64_t>(last_.row) + 1,
+                   static_cast<double>(step) / step_.ns,
+                   last_.stamp - last_.first))
+      watch_.keep_place(i > 0 ? place(front, i - 1) : last_.end_of_block);
+    if (step <= 0 || step > step_.longest) {
       output_.rows(front.block, run, i);
       run = i;
       if (decide(front, i, stamp, ahead - (i - from)) == Verdict::drop) {
@@ -296,27 +187,35 @@ bool TimeGrid::take_one_by_one(
         run = i + 1;
         continue;
       }
-    } else if (!step_.coarse && (odd_.times != 0 || step < step_.shortest)) {
-      watch_rate(front, i, static_cast<double>(step) / step_.ns);
     }
-    backward_.in_a_row = 0;
+    if (backward_.in_a_row > 0) backward_ = {};
     ++last_.index;
+    ++last_.row;
     last_.as_read = time[i] + last_.wrap;
     last_.stamp = stamp;
     last_.any = true;
     sketch_.add(last_.index, stamp);
-    if (stamp - last_.first < window_.from_ns) {
-      ++counts_.outside;
+    recent_.push(stamp);
+    if (place_in_window(stamp)) continue;
+    if (!window_.over) {
       run = i + 1;
-    } else if (stamp - last_.first >= window_.to_ns) {
-      output_.rows(front.block, run, i);
-      window_.over = true;
-      return false;
-    } else {
-      if (!start_ns_) start_ns_ = stamp;
-      ++counts_.used;
+      continue;
     }
+    output_.rows(front.block, run, i);
+    return i;
   }
+  return to;
+}
+
+bool TimeGrid::place_in_window(std::int64_t stamp) {
+  if (stamp - last_.first < window_.from_ns) {
+    ++counts_.outside;
+    return false;
+  }
+  window_.over = stamp - last_.first >= window_.to_ns;
+  if (window_.over) return false;
+  if (!start_ns_) start_ns_ = stamp;
+  ++counts_.used;
   return true;
 }
 
@@ -350,14 +249,14 @@ void TimeGrid::without_stamps(Pending& front) {
   output_.rows(front.block, from, to);
 }
 
-// The rate that most of the log keeps, unless rows over time contradict it.
+// The rate that most of the log keeps, unless rows over time contradict it. Pauses are left out.
 double TimeGrid::even_interval() {
   const double usual = step_.coarse ? sketch_.line_ns() : sketch_.interval_ns();
-  const double stamped = static_cast<double>(last_.stamp - last_.first);
-  const double off = std::abs(static_cast<double>(last_.index) * usual - stamped);
-  if (last_.index <= 0 || off <= std::max(0.01 * stamped, 2.0 * static_cast<double>(step_.longest)))
+  const double spanned = sketch_.span_ns(last_.index, last_.stamp);
+  const double off = std::abs(usual - spanned), rows = static_cast<double>(last_.index);
+  if (!(spanned > 0) ||
+      off * rows <= std::max(0.01 * spanned * rows, 2.0 * static_cast<double>(step_.longest)))
     return usual;
-  const double spanned = stamped / static_cast<double>(last_.index);
   warnings_.add("uneven_sampling",
                 fmt::format("long stretches of the log keep {} Hz, rows over time are {} "
                             "Hz, which is used: the sampling is uneven, and times on the axes are "
@@ -365,6 +264,49 @@ double TimeGrid::even_interval() {
                             brief_text(1e9 / usual, 5),
                             brief_text(1e9 / spanned, 5)));
   return spanned;
+}
+
+// Two rates make no grid: one of the stretches has to be chosen. A few rows at another rate are said
+// and, as are rows of which only each second or third is there, placed on the grid.
+void TimeGrid::judge_rate_change() {
+  constexpr std::uint64_t kShare = 50;  // of the rows
+  if (step_.coarse) return;
+  watch_.end();
+  double before = 1e9 / step_.ns, after = before / watch_.intervals(), at_ns = 0;
+  const bool odd = watch_.rows() > 0;
+  bool asks = odd && !watch_.whole() && kShare * watch_.rows() >= counts_.used;
+  if (odd && static_cast<double>(watch_.began_ns()) < 4 * watch_.intervals() * step_.ns) {
+    std::swap(before, after);  // the first rows are the odd ones
+    at_ns = static_cast<double>(watch_.ended_ns()) + watch_.intervals() * step_.ns;
+  } else if (odd) {
+    at_ns = static_cast<double>(watch_.began_ns());
+  }
+  if (const auto change = sketch_.rate_change(); change && !asks && !(odd && watch_.whole())) {
+    asks = true;
+    at_ns = change->row;
+    before = 1e9 / change->before_ns;
+    after = 1e9 / change->after_ns;
+  }
+  if (asks) {
+    const std::string at = shortest(std::round(at_ns * 1e-6) / 1e3);
+    throw Error(
+        {ErrorKind::input,
+         "E0334",
+         source_.info().file,
+         fmt::format("the sampling rate changes {} s after the first stamp, from {} to {} "
+                     "Hz: no grid holds both",
+                     at,
+                     brief_text(before, 5),
+                     brief_text(after, 5)),
+         "",
+         fmt::format("`to_s` {} reads what stands before it, `from_s` {} what follows", at, at)});
+  }
+  if (odd)
+    warnings_.add("rate_change",
+                  fmt::format("the sampling rate changes ({} to {} Hz): the grid keeps the first",
+                              brief_text(before, 6),
+                              brief_text(after, 6)),
+                  watch_.place());
 }
 
 void TimeGrid::finish(LogInfo& info) {
@@ -390,6 +332,7 @@ void TimeGrid::finish(LogInfo& info) {
   time.start_ns = start_ns_;
   time.gaps = counts_.gaps;
   time.missing_samples = counts_.missing;
+  judge_rate_change();
   const double interval = even_interval();
   time.rate_hz = interval > 0 ? 1e9 / interval : 0;
   const auto deviation = sketch_.deviation(interval);

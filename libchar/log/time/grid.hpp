@@ -2,7 +2,7 @@
 // From rows with stamps to samples on a uniform grid, streaming: missing samples are put in as NaN
 // (never interpolated), doubled and backward rows are dropped, rollovers are unwrapped, and
 // everything is counted.
-// The interval comes from first_interval.hpp, the rate from stamp_sketch.hpp; what becomes of a
+// The interval comes from stamp_model.hpp, the rate from stamp_sketch.hpp; what becomes of a
 // stamp that does not fit is decided in time_repairs.cpp.
 
 #include <cstdint>
@@ -13,7 +13,11 @@
 
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/log/time/first_interval.hpp"
+#include "libchar/log/time/clock_breaks.hpp"
+#include "libchar/log/time/grid_output.hpp"
+#include "libchar/log/time/own_rows.hpp"
+#include "libchar/log/time/recent_stamps.hpp"
+#include "libchar/log/time/stamp_model.hpp"
 #include "libchar/log/time/stamp_sketch.hpp"
 #include "libchar/log/time/time_repairs.hpp"
 
@@ -23,25 +27,6 @@ inline constexpr std::int64_t kMostNs = std::int64_t{1}
                                         << 62U;  ///< of a stamp, and between two of a log
 inline constexpr std::size_t kRowsAhead =
     16;  ///< rows looked at before a late stamp is called a gap
-
-/// Samples on their way to the sink: long runs as they stand in a block, others assembled first.
-class GridOutput {
- public:
-  explicit GridOutput(BlockSink& sink) : sink_(sink) {}
-  void begin(const LogInfo& so_far);
-  void rows(const RowBlock& block, std::size_t from, std::size_t to);
-  void missing(std::uint64_t count);
-  void flush();
-  std::uint64_t delivered() const { return delivered_; }
-
- private:
-  void deliver(const std::vector<const double*>& channels, std::size_t rows);
-
-  BlockSink& sink_;
-  std::vector<std::vector<double>> staging_;
-  std::size_t staged_ = 0;
-  std::uint64_t delivered_ = 0;
-};
 
 /// Places rows on the grid and passes them to the sink in order.
 class TimeGrid {
@@ -62,34 +47,44 @@ class TimeGrid {
     RowBlock block;
     std::uint64_t rows_before = 0;
     std::size_t done = 0;
+    bool own = false;  ///< without the rows that are left out
   };
+  void leave_out_blank(Pending& item);
   void begin();
+  bool ready(bool end);
   void learn();
-  void say_pattern(const FirstInterval& found);
+  std::vector<std::int64_t> first_stamps();
+  void drop_wild_start(const std::vector<std::int64_t>& stamps);
+  void refuse_without_axis(const std::vector<std::int64_t>& stamps);
+  void say_pattern(const StampModel& found);
   double even_interval();
+  void judge_rate_change();
   void process(bool end);
-  void process_rows(Pending& front, std::size_t count);
+  std::size_t process_rows(Pending& front, std::size_t count);
   bool take_regular(const std::int64_t* time, std::size_t n);
-  bool take_one_by_one(
+  std::size_t take_one_by_one(
       Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
+  bool place_in_window(std::int64_t stamp);
   void without_stamps(Pending& front);
   /// The stamp, when it and its distance from the first leave room for every sum and difference in
   /// 64 bits. Throws Error(input) else.
   std::int64_t checked(const Pending& front, std::size_t row, std::int64_t stamp) const;
   enum class Verdict { keep, drop };
   Verdict decide(const Pending& front, std::size_t row, std::int64_t& stamp, std::size_t ahead);
-  void place_late_row(const Pending& front,
-                      std::size_t row,
-                      std::int64_t step,
-                      std::int64_t& stamp);
-  void pass_gap(const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap);
+  Verdict place_late_row(const Pending& front,
+                         std::size_t row,
+                         std::int64_t step,
+                         std::int64_t& stamp);
+  Verdict pass_gap(
+      const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap, std::size_t left);
+  Verdict drop_wild(const Pending& front, std::size_t row);
   Verdict backward(const Pending& front, std::size_t row, std::int64_t& stamp);
-  void unwrap(const Pending& front, std::size_t row, const Rollover& rollover, std::int64_t& stamp);
+  [[noreturn]] void refuse_backward() const;
+  void unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp);
   std::int64_t lag(const Pending& front,
                    std::size_t row,
                    std::int64_t stamp,
                    std::size_t ahead) const;
-  void watch_rate(const Pending& front, std::size_t row, double ratio);
   /// A gap of so many steps, of which so many samples lie in the window.
   void leave_missing(std::uint64_t samples, std::int64_t steps);
   std::string place(const Pending& front, std::size_t row) const;
@@ -106,6 +101,7 @@ class TimeGrid {
   };
   struct Window {
     std::int64_t from_ns = 0, to_ns = 0;  ///< after the first stamp
+    bool begun = false;                   ///< its own rows say the interval
     bool over = false;
   };
   struct Last {
@@ -114,21 +110,13 @@ class TimeGrid {
     std::int64_t stamp = 0, as_read = 0;  ///< unwrapped, and as the file has it
     std::int64_t wrap = 0;                ///< what rollovers have added
     std::int64_t index = -1;              ///< on the grid, from the first row of the file
+    std::int64_t row = -1;                ///< of those on the grid
+    std::string end_of_block;             ///< place of the last row of the block in front
   };
   struct Counts {
     std::uint64_t rows = 0, used = 0, dropped = 0, outside = 0;  ///< rows: the sum of the others
     std::uint64_t gaps = 0, missing = 0;
   };
-  struct OddSteps {
-    double ratio = 1;   ///< to the regular step
-    int times = 0;      ///< in a row
-    std::string place;  ///< of the last row at the old distance
-  };
-  struct BackwardRows {
-    std::uint64_t in_a_row = 0;
-    std::string first;  ///< its place
-  };
-
   const RowSource& source_;
   const ReadOptions& options_;
   GridOutput output_;
@@ -141,10 +129,11 @@ class TimeGrid {
   Window window_;
   Last last_;
   Counts counts_;
-  OddSteps odd_;
+  RateWatch watch_;
   BackwardRows backward_;
   std::optional<std::int64_t> start_ns_;
-  std::string end_of_block_;
+  OwnRows own_rows_;
+  RecentStamps recent_;
   StampSketch sketch_;
 };
 

@@ -17,10 +17,14 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
-void StampSketch::begin_cell(const Pair& pair) {
-  if (cells_.empty()) origin_ = pair;
+void StampSketch::begin_cell(const Pair& read) {
+  if (cells_.empty()) {
+    zero_ = read;
+    first_stamp_ = read.stamp;
+  }
   if (cells_.size() == kCells) thin();
-  cells_.push_back({pair, pair, pair});
+  const Pair pair = from_zero(read);
+  cells_.push_back({pair, pair, pair, read.stamp - first_stamp_});
   in_cell_ = per_cell_ - 1;
   low_ = high_ = residual(pair);
 }
@@ -30,8 +34,8 @@ void StampSketch::begin_cell(const Pair& pair) {
 LIBCHAR_WIDE_LANES void StampSketch::extremes(
     const std::int64_t* stamps, std::size_t n, const Pair& from, double& low, double& high) const {
   constexpr std::int64_t kLargest = std::int64_t{1} << 51U;
-  const std::int64_t first = stamps[0] - origin_.stamp, last = stamps[n - 1] - origin_.stamp;
-  const std::int64_t index = from.index - origin_.index;
+  const std::int64_t first = stamps[0] - zero_.stamp, last = stamps[n - 1] - zero_.stamp;
+  const std::int64_t index = from.index - zero_.index;
   std::size_t i = 0;
   // Stamps rise, or the run would not be one.
   if (first > -kLargest && last < kLargest) {
@@ -44,7 +48,7 @@ LIBCHAR_WIDE_LANES void StampSketch::extremes(
     Four lows = {low, low, low, low}, highs = {high, high, high, high};
     for (; i + 4 <= n; i += 4) {
       const FourStamps whole = *reinterpret_cast<const FourStampsInMemory*>(stamps + i);
-      const FourStamps shifted = (whole - origin_.stamp) + bits;
+      const FourStamps shifted = (whole - zero_.stamp) + bits;
       Four d;
       std::memcpy(&d, &shifted, sizeof d);
       const Four r = (d - kMantissa) -
@@ -58,7 +62,7 @@ LIBCHAR_WIDE_LANES void StampSketch::extremes(
     }
   }
   for (; i < n; ++i) {
-    const double r = residual({from.index + static_cast<std::int64_t>(i), stamps[i]});
+    const double r = residual(from_zero({from.index + static_cast<std::int64_t>(i), stamps[i]}));
     low = std::min(low, r);
     high = std::max(high, r);
   }
@@ -114,17 +118,32 @@ double StampSketch::interval_ns() const {
 double StampSketch::line_ns() const {
   double index = 0, stamp = 0;
   for (const Cell& cell : cells_) {
-    index += static_cast<double>(cell.first.index - origin_.index);
-    stamp += static_cast<double>(cell.first.stamp - origin_.stamp);
+    index += static_cast<double>(cell.first.index);
+    stamp += static_cast<double>(cell.first.stamp);
   }
   const auto n = static_cast<double>(cells_.size());
   double sum_ky = 0, sum_kk = 0;
   for (const Cell& cell : cells_) {
-    const double k = static_cast<double>(cell.first.index - origin_.index) - index / n;
+    const double k = static_cast<double>(cell.first.index) - index / n;
     sum_kk += k * k;
-    sum_ky += k * (static_cast<double>(cell.first.stamp - origin_.stamp) - stamp / n);
+    sum_ky += k * (static_cast<double>(cell.first.stamp) - stamp / n);
   }
   return sum_kk > 0 ? sum_ky / sum_kk : 0;
+}
+
+std::optional<RateChange> StampSketch::rate_change() const {
+  std::vector<double> index, stamp;
+  for (const Cell& cell : cells_) {
+    index.push_back(static_cast<double>(cell.first.index));
+    stamp.push_back(static_cast<double>(cell.first.stamp));
+  }
+  auto change = find_rate_change(index, stamp);
+  if (!change) return change;
+  const auto next = std::lower_bound(index.begin(), index.end(), change->row);
+  const Cell& near = cells_[static_cast<std::size_t>(next - index.begin())];
+  change->row = static_cast<double>(near.after_first) -
+                (static_cast<double>(near.first.index) - change->row) * change->after_ns;
+  return change;
 }
 
 StampSketch::Deviation StampSketch::deviation(double interval) const {

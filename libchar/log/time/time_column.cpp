@@ -76,9 +76,26 @@ constexpr std::array kTimeNames = {
     KnownName{"millis", 1000000},
     KnownName{"milliseconds", 1000000},
     KnownName{"micros", 1000},
+    KnownName{"\xE6\x97\xB6\xE9\x97\xB4"},  // Chinese
+    KnownName{"\xE6\x97\xB6\xE9\x97\xB4\xE6\x88\xB3"},
+    KnownName{"\xE6\x99\x82\xE9\x96\x93"},
+    KnownName{"\xE6\x99\x82\xE5\x88\xBB"},
     KnownName{"microseconds", 1000},
     KnownName{"nanoseconds", 1},
     KnownName{"sampletimefine"}};  // Xsens: 0.1 ms from MT Manager, 1 us from DOTs
+
+// Units as names, and what is a clock elsewhere: time only where the values are a steady clock.
+constexpr std::array kClockNames = {KnownName{"ms", 1000000},
+                                    KnownName{"msec", 1000000},
+                                    KnownName{"us", 1000},
+                                    KnownName{"usec", 1000},
+                                    KnownName{"ns", 1},
+                                    KnownName{"ts"},
+                                    KnownName{"tow", 1000000000},
+                                    KnownName{"mjd"},
+                                    KnownName{"utc"},
+                                    KnownName{"tick"},
+                                    KnownName{"ticks"}};
 
 // Time only where the values are dates or clock times.
 constexpr std::array<std::string_view, 8> kDateNames = {
@@ -134,6 +151,7 @@ std::optional<TimeName> time_name(std::string_view stem) {
   std::string_view name = lower;
   while (name.size() > 1 && (name[0] == '_' || name[0] == '%' || name[0] == '#' || name[0] == ' '))
     name.remove_prefix(1);
+  if (name.ends_with("()")) name.remove_suffix(2);  // millis()
   TimeName out;
   if (name == "sampletimefine" || name == "sampletime" || time_of(name, kDevices) ||
       header_stamp(name))
@@ -143,6 +161,12 @@ std::optional<TimeName> time_name(std::string_view stem) {
   for (const KnownName& known : kTimeNames)
     if (known.name == name) {
       out.unit_ns = known.unit_ns;
+      return out;
+    }
+  for (const KnownName& known : kClockNames)
+    if (known.name == name) {
+      out.unit_ns = known.unit_ns;
+      out.letter = true;
       return out;
     }
   out.letter = name == "t";
@@ -200,26 +224,49 @@ struct TimeCandidate {
   std::size_t column = 0;
   Clock clock = Clock::unknown;
   bool rises = false;
-  double scatter = 0;  // of its steps, in steps
+  double scatter = 0;  // about the line through them, in steps
   bool letter = false;
 };
+
+// How far values stand off their line, in its steps: a device's whole seconds are worse than a
+// host's steady milliseconds.
+double scatter_of(const std::vector<double>& values) {
+  const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
+  if (!(step > 0)) return std::numeric_limits<double>::infinity();
+  std::vector<double> off;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    off.push_back(values[i] - values.front() - step * static_cast<double>(i));
+  std::vector<double> sorted = off;
+  const double middle = median_in_place(sorted, Middle::lower);
+  for (double& value : off) value = std::fabs(value - middle);
+  return kMadToSd * median_in_place(off) / step;
+}
 
 TimeCandidate time_candidate(const TableFront& table, std::size_t column, Clock clock) {
   const std::vector<double> values = table.first_values(column).values;
   TimeCandidate out{column, clock, values.size() < 2, 0};
   if (values.size() < 2) return out;
-  const double step = usual_step(values);
   std::size_t back = 0;
-  std::vector<double> off;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double d = values[i] - values[i - 1];
-    back += d < 0;
-    off.push_back(std::fabs(d - step));
-  }
-  out.rises = values.back() > values.front() && 5 * back <= off.size();
-  out.scatter =
-      step > 0 ? kMadToSd * median_in_place(off) / step : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < values.size(); ++i) back += values[i] < values[i - 1];
+  out.rises = values.back() > values.front() && 5 * back < values.size();
+  out.scatter = scatter_of(values);
   return out;
+}
+
+// Whatever its name: no value steps back, nearly all steps are alike, and it does not count the rows.
+bool steady_clock(const std::vector<double>& values) {
+  constexpr std::size_t kFewest = 8;
+  if (values.size() < kFewest) return false;
+  const double usual = usual_step(values);
+  std::size_t alike = 0;
+  bool counts = true;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = values[i] - values[i - 1];
+    if (step < 0) return false;
+    alike += std::fabs(step - usual) <= 0.5 * usual;
+    counts = counts && step == 1;
+  }
+  return usual > 0 && !counts && 10 * alike >= 8 * (values.size() - 1);
 }
 
 bool unit_of_another_quantity(const ColumnLabel& column) {
@@ -238,15 +285,49 @@ bool unit_of_time(const ColumnLabel& column) {
   return unit && unit->quantity == Quantity::time;
 }
 
-// A temperature t goes up and down.
+// A temperature t goes up and down, or rises with noise.
 bool wanders(const TableFront& table, std::size_t column) {
   const std::vector<double> values = table.first_values(column).values;
-  std::size_t up = 0, down = 0;
+  std::size_t down = 0, up = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     up += values[i] > values[i - 1];
     down += values[i] < values[i - 1];
   }
-  return values.size() >= 8 && 5 * std::min(up, down) > values.size();
+  return values.size() >= 8 && (5 * std::min(up, down) > values.size() ||
+                                (stem_of(table.columns[column]) == "T" && !steady_clock(values)));
+}
+
+// The first column that is a clock by its values, one whose name speaks of time before others; said as
+// a guess. A rate that is known leaves it a channel.
+std::optional<std::size_t> column_like_a_clock(const TableFront& table,
+                                               const ReadOptions& options,
+                                               LogInfo& info) {
+  static constexpr std::array<std::string_view, 8> kWords = {
+      "time", "stamp", "clock", "tick", "epoch", "utc", "tow", "_ts"};
+  if (options.rate_hz || table.stated_rate_hz || info.time.rate_hz > 0 || table.columns.size() < 2)
+    return std::nullopt;
+  std::optional<std::size_t> found;
+  bool named = false;
+  for (std::size_t c = 0; c < table.columns.size() && !named; ++c) {
+    const ColumnLabel& column = table.columns[c];
+    const std::string name = ascii_lower(stem_of(column));
+    if (column.text || unit_of_another_quantity(column) || name.find("temp") != std::string::npos ||
+        name == "t" || (has_unit(column) && !unit_of_time(column)))
+      continue;
+    named = std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) {
+      return name.find(word) != std::string::npos;
+    });
+    if ((named || !found) && steady_clock(table.first_values(c).values))
+      found = c;
+    else
+      named = false;
+  }
+  if (found)
+    info.guesses.push_back(
+        fmt::format("time column: {}, because it is a steady clock (`time_column` none keeps it as "
+                    "a channel)",
+                    printable(table.columns[*found].name)));
+  return found;
 }
 
 std::vector<TimeCandidate> time_candidates(const TableFront& table) {
@@ -276,6 +357,11 @@ bool steadier(const TimeCandidate& a, const TimeCandidate& b) {
   return a.scatter * 3 < b.scatter && b.scatter > 0.01;
 }
 
+// A device's clock that does not tell its own samples apart.
+bool coarser(const TimeCandidate& a, const TimeCandidate& b) {
+  return a.scatter > 0.1 && steadier(b, a);
+}
+
 std::string names_of(const TableFront& table,
                      const std::vector<TimeCandidate>& which,
                      std::size_t but) {
@@ -286,19 +372,24 @@ std::string names_of(const TableFront& table,
 }
 
 // Of those that rise a device's clock, else the steadiest, else the first that is no host's.
-std::optional<std::size_t> column_called_time(const TableFront& table, LogInfo& info) {
+std::optional<std::size_t> column_called_time(const TableFront& table,
+                                              const ReadOptions& options,
+                                              LogInfo& info) {
   std::vector<TimeCandidate> all = time_candidates(table);
-  if (all.empty()) return std::nullopt;
+  if (all.empty()) return column_like_a_clock(table, options, info);
   std::vector<TimeCandidate> rising;
   for (const TimeCandidate& one : all)
     if (one.rises) rising.push_back(one);
   const std::vector<TimeCandidate>& among = rising.empty() ? all : rising;
   TimeCandidate best = among.front();
   for (const TimeCandidate& one : among) {
-    const bool device = one.clock == Clock::device && best.clock != Clock::device;
-    const bool beaten = best.clock == Clock::device && one.clock != Clock::device;
+    const bool device =
+        one.clock == Clock::device && best.clock != Clock::device && !coarser(one, best);
+    const bool beaten =
+        best.clock == Clock::device && one.clock != Clock::device && !coarser(best, one);
     if (device ||
-        (!beaten && (steadier(one, best) || (one.clock < best.clock && !steadier(best, one)))))
+        (!beaten && (steadier(one, best) ||
+                     (one.clock < best.clock && !steadier(best, one) && !coarser(one, best)))))
       best = one;
   }
   if (all.size() < 2) return best.column;
@@ -354,7 +445,7 @@ std::optional<std::size_t> find_time_column(const TableFront& table,
   if (options.time_column == "none") return std::nullopt;
   if (options.time_column != "auto")
     return named_column(table, options.time_column, options, info.file);
-  if (table.named) return column_called_time(table, info);
+  if (table.named) return column_called_time(table, options, info);
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (table.columns[c].calendar && !table.columns[c].text) return c;
   return column_that_rises(table, options, info);

@@ -57,6 +57,7 @@ struct TableFront {
       false;  ///< a text table without names has its stamps in front, as a rule; an array is all channels
   std::function<FirstValues(std::size_t column)> first_values;
   std::optional<double> stated_rate_hz;  ///< by a comment or a preamble of the file
+  std::optional<double> stated_tick_s;   ///< the same of one count of the stamps
 };
 
 /// Does a column of this name hold stamps ("t", "time_us", "Time (s)")?
@@ -74,12 +75,18 @@ std::optional<std::size_t> find_time_column(const TableFront& table,
 /// The usual distance of two values, 0 for fewer.
 double usual_step(const std::vector<double>& values);
 
-/// Nanoseconds in one unit of that column; the unit's name and whether it is a guess go to
+/// How numbers become nanoseconds: (number - zero) * ns.
+struct StampUnit {
+  std::int64_t ns = 0;
+  double zero = 0;  ///< 1970 in a count of days that begins long before it
+};
+
+/// The unit of that column; its name and whether it is a guess go to
 /// info.time. A guess has to agree with a rate that the file states (Error(input) else, with both),
 /// a unit that is said gives a warning. Throws Error(usage) for an unknown options.time_unit.
-std::int64_t find_time_unit(const TableFront& table,
-                            std::size_t column,
-                            const ReadOptions& options,
-                            LogInfo& info);
+StampUnit find_time_unit(const TableFront& table,
+                         std::size_t column,
+                         const ReadOptions& options,
+                         LogInfo& info);
 
 }  // namespace libchar

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/log/time/grid.hpp"
@@ -17,12 +18,12 @@
 namespace libchar {
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;  // ns; a counter's unit is below it
-constexpr double kLargestGap = 1e8;           // grid points in one gap
+constexpr double kLargestGap = 1e8;  // grid points in one gap
+constexpr double kLongGap = 64;      // beyond it the rate is too little known to count them
 constexpr std::uint64_t kBackward =
     64;                               // backward rows in a row before the clock is called restarted
 constexpr double kWildSteps = 10000;  // steps ahead of its followers that make a single stamp wild
-constexpr int kRateRun = 8;           // equal odd steps in a row that make a change of rate
+constexpr std::int64_t kWildEnd = 1000;  // steps to the last rows, if that is longer than the log
 
 /// Of an interval far below a nanosecond there may be more steps than 64 bits count.
 std::int64_t whole_steps(double steps) {
@@ -43,26 +44,57 @@ GridStretch gap_in_window(
   return inside;
 }
 
-std::optional<Rollover> find_rollover(std::int64_t before_ns,
-                                      std::int64_t stamp_ns,
-                                      std::int64_t unit_ns,
-                                      double dt_ns) {
-  for (const int bits : {16, 32}) {
-    const double range = std::ldexp(static_cast<double>(unit_ns), bits);
-    if (range > 4e18 || stamp_ns < 0 || before_ns < 0 || static_cast<double>(before_ns) >= range)
-      continue;
-    const double step = static_cast<double>(stamp_ns - before_ns) + range;
-    if (step > 0 && step < 0.5 * range && step < 1000 * dt_ns)
-      return Rollover{bits, static_cast<std::int64_t>(range)};
+bool RateWatch::add(std::uint64_t row, double intervals, std::int64_t after_first_ns) {
+  constexpr std::uint64_t kApart = 8;  // regular steps that end a run
+  const bool apart = row > last_row_ + kApart;
+  if (apart) end();
+  const bool first = steps_.empty();
+  if (first) {
+    first_row_ = row;
+    first_ns_ = after_first_ns;
   }
-  return std::nullopt;
+  last_row_ = row;
+  last_ns_ = after_first_ns;
+  if (counted_ && std::fabs(intervals - intervals_) <= 0.25 * intervals_)
+    ended_ns_ = after_first_ns;
+  steps_.push_back(intervals);
+  if (steps_.size() < kRun) return first;
+  count(0.25, 0.7);
+  steps_.clear();
+  return false;
 }
 
-std::int64_t common_lag(std::vector<double> lags) {
-  const double own = lags.front();
-  const std::size_t quarter = lags.size() / 4;
-  std::nth_element(lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(quarter), lags.end());
-  return whole_steps(std::min(own, lags[quarter]));
+void RateWatch::end() {
+  if (steps_.size() >= kShortRun) count(0.1, 1);
+  steps_.clear();
+  counted_ = false;
+}
+
+// The steps are those of another rate where so many of them lie so near to the usual one.
+void RateWatch::count(double near, double share) {
+  const auto odd = static_cast<double>(steps_.size());
+  std::vector<double> steps = steps_;
+  const double usual = median_in_place(steps, Middle::lower);
+  const auto alike =
+      static_cast<double>(std::count_if(steps_.begin(), steps_.end(), [&](double step) {
+        return std::fabs(step - usual) <= near * usual;
+      }));
+  const std::uint64_t rows = last_row_ - first_row_ + 1;
+  if ((usual <= 1.25 && usual >= 0.75) || alike < share * odd ||
+      odd < 0.7 * static_cast<double>(rows))
+    return;
+  if (rows_ == 0) {
+    intervals_ = usual;
+    began_ns_ = first_ns_;
+    began_ = place_;
+  }
+  rows_ += rows;
+  ended_ns_ = last_ns_;
+  counted_ = true;
+}
+
+bool RateWatch::whole() const {
+  return intervals_ > 1.5 && std::fabs(intervals_ - std::round(intervals_)) < 0.03 * intervals_;
 }
 
 std::string TimeGrid::place(const Pending& front, std::size_t row) const {
@@ -110,7 +142,7 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
     last_.first = stamp;
     return Verdict::keep;
   }
-  const std::int64_t step = stamp - last_.stamp;
+  std::int64_t step = stamp - last_.stamp;
   if (step == 0) {
     if (stamp < last_.as_read) return backward(front, row, stamp);
     if (step_.coarse) return Verdict::keep;
@@ -120,38 +152,47 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
     return Verdict::drop;
   }
   if (step < 0) return backward(front, row, stamp);
-  watch_rate(front, row, static_cast<double>(step) / step_.ns);
+  if (const std::int64_t hour = skipped_hour(last_.stamp, stamp, source_.info().time, step_.ns)) {
+    last_.wrap -= hour;
+    stamp -= hour;
+    warnings_.add("clock_change",
+                  "an hour is skipped, as at the beginning of summer time: no gap",
+                  place(front, row));
+    return Verdict::keep;
+  }
   const std::int64_t gap = lag(front, row, stamp, ahead);
-  if (gap > 0)
-    pass_gap(front, row, step, gap);
-  else
-    place_late_row(front, row, step, stamp);
-  return Verdict::keep;
+  return gap > 0 ? pass_gap(front, row, step, gap, ahead) : place_late_row(front, row, step, stamp);
+}
+
+TimeGrid::Verdict TimeGrid::drop_wild(const Pending& front, std::size_t row) {
+  warnings_.add("wild_stamp",
+                "rows with a stamp far away from those around them: dropped",
+                place(front, row));
+  return Verdict::drop;
 }
 
 // Late, but the rows behind it are not: its stamp is wrong, the row has its place.
-void TimeGrid::place_late_row(const Pending& front,
-                              std::size_t row,
-                              std::int64_t step,
-                              std::int64_t& stamp) {
-  if (static_cast<double>(step) > kWildSteps * step_.ns)
-    fail(front,
-         row,
-         "E0316",
-         fmt::format("wild time stamp: {} s ahead of the rows around it",
-                     shortest(static_cast<double>(step) * 1e-9)),
-         "remove the row, or read with `time_column` none and `rate_hz` HZ");
+TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front,
+                                           std::size_t row,
+                                           std::int64_t step,
+                                           std::int64_t& stamp) {
+  const double late = static_cast<double>(step) + recent_.last_late(step_.ns);
+  if (late > kWildSteps * step_.ns) return drop_wild(front, row);
+  if (late <= 2 * step_.ns) return Verdict::keep;
   warnings_.add("late_stamp",
                 "stamps far ahead of the rows behind them: the rows are placed on the grid",
                 place(front, row));
   stamp = last_.stamp + static_cast<std::int64_t>(std::llround(step_.ns));
+  return Verdict::keep;
 }
 
-// Grid points before the window's start are passed over.
-void TimeGrid::pass_gap(const Pending& front,
-                        std::size_t row,
-                        std::int64_t step,
-                        std::int64_t gap) {
+// Grid points before the window's start are passed over. A few last rows, further away than the log
+// is long, are no end of a gap.
+TimeGrid::Verdict TimeGrid::pass_gap(
+    const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap, std::size_t left) {
+  if (left <= kRowsAhead && gap > kWildEnd && step > last_.stamp - last_.first &&
+      counts_.used > kRowsAhead)
+    return drop_wild(front, row);
   if (static_cast<double>(gap) > kLargestGap)
     fail(front,
          row,
@@ -162,63 +203,89 @@ void TimeGrid::pass_gap(const Pending& front,
          "remove the row, `from_s` and `to_s` choose a stretch, `time_column` none and `rate_hz` "
          "HZ ignore "
          "the stamps");
-  warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
   const GridStretch inside = gap_in_window(gap,
                                            static_cast<double>(last_.stamp - last_.first),
                                            step_.ns,
                                            window_.from_ns,
                                            window_.to_ns);
+  if (inside.count() > 0)
+    warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
   if (inside.count() > 0 && !start_ns_)
     start_ns_ = last_.stamp + static_cast<std::int64_t>(
                                   std::llround(static_cast<double>(inside.first) * step_.ns));
   leave_missing(inside.count(), gap);
+  // The step that is left is a usual one; of packets and the like only the lag says what that is.
+  const double left_out =
+      step_.coarse ? static_cast<double>(gap) * step_.ns : static_cast<double>(step) - step_.ns;
+  if (static_cast<double>(gap) > kLongGap)
+    sketch_.skip(gap, static_cast<std::int64_t>(std::llround(left_out)));
+  recent_.clear();
+  return Verdict::keep;
 }
 
 void TimeGrid::leave_missing(std::uint64_t samples, std::int64_t steps) {
-  ++counts_.gaps;
+  counts_.gaps += samples > 0 ? 1 : 0;
   counts_.missing += samples;
   output_.missing(samples);
   last_.index += steps;
 }
 
-// Counters of 16 or 32 bits (in the stamps' own unit) that ran over go on; other steps back drop
-// the row.
+// What begins again goes on; other steps back drop the row.
 TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std::int64_t& stamp) {
-  const std::int64_t unit_ns = source_.info().time.unit_ns;
-  if (unit_ns < kSecond) {
-    if (const auto rollover =
-            find_rollover(last_.stamp - last_.wrap, stamp - last_.wrap, unit_ns, step_.ns)) {
-      unwrap(front, row, *rollover, stamp);
-      return Verdict::keep;
-    }
+  if (const auto wrap =
+          find_wrap(last_.stamp - last_.wrap, stamp - last_.wrap, source_.info().time, step_.ns)) {
+    unwrap(front, row, *wrap, stamp);
+    return Verdict::keep;
   }
-  if (backward_.in_a_row == 0) backward_.first = source_.where(front.block, row, front.rows_before);
-  if (++backward_.in_a_row >= kBackward)
-    throw Error(
-        {ErrorKind::input,
-         "E0317",
-         backward_.first,
-         fmt::format("the time steps back here and {} rows do not catch up (concatenated "
-                     "logs, or a wild stamp before?)",
-                     kBackward),
-         "",
-         "split the file there, `to_s` ends before it, `time_column` none and `rate_hz` HZ ignore "
-         "the stamps"});
+  if (backward_.in_a_row == 0) backward_.place = source_.where(front.block, row, front.rows_before);
+  backward_.add(stamp);
+  if (backward_.in_a_row >= kBackward) refuse_backward();
   warnings_.add("backward_timestamp",
                 "rows whose stamp lies before that of the row before: dropped",
                 place(front, row));
   return Verdict::drop;
 }
 
+void TimeGrid::refuse_backward() const {
+  const LogInfo& log = source_.info();
+  const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
+  const std::string how_far = duration_text(seconds(last_.stamp - backward_.first));
+  std::string hint =
+      fmt::format("`time_column` none and `rate_hz` {} take the rows one after the other",
+                  shortest(rounded(1e9 / step_.ns, 6)));
+  if (backward_.restarted() && last_.stamp > last_.first)
+    hint = fmt::format("`to_s` {} reads what stands before it, {}",
+                       shortest(seconds(last_.stamp - last_.first)),
+                       hint);
+  if (!log.topics.empty() && options_.time_source != "log")
+    hint = "`time_source` log takes the time of recording, where the log has it; " + hint;
+  throw Error(
+      {ErrorKind::input,
+       "E0317",
+       backward_.place,
+       backward_.restarted()
+           ? fmt::format(
+                 "the time steps back here by {} and goes on from there: {}",
+                 how_far,
+                 log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
+                     ? "parts of a second without leading zeros, or two logs in one file"
+                     : "two logs in one file, or a device that restarted")
+           : fmt::format("the time steps back here by {}, and {} rows in no order do not "
+                         "catch up: rows of several sources, or a wild stamp before",
+                         how_far,
+                         kBackward),
+       "",
+       hint});
+}
+
 void TimeGrid::unwrap(const Pending& front,
                       std::size_t row,
-                      const Rollover& rollover,
+                      const ClockWrap& wrap,
                       std::int64_t& stamp) {
-  last_.wrap += rollover.range_ns;
-  stamp = checked(front, row, stamp + rollover.range_ns);
-  warnings_.add("clock_rollover",
-                fmt::format("the {}-bit clock ran over: unwrapped", rollover.bits),
-                place(front, row));
+  last_.wrap += wrap.range_ns;
+  stamp = checked(front, row, stamp + wrap.range_ns);
+  warnings_.add(
+      wrap.local ? "clock_change" : "clock_rollover", wrap.what + ": unwrapped", place(front, row));
   if (stamp - last_.stamp <= step_.longest) return;
   const std::int64_t late =
       static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_.stamp) / step_.ns)) -
@@ -231,8 +298,10 @@ std::int64_t TimeGrid::lag(const Pending& front,
                            std::size_t row,
                            std::int64_t stamp,
                            std::size_t ahead) const {
+  const double last_late = step_.coarse ? 0 : recent_.last_late(step_.ns);
   const auto late = [&](std::int64_t t, std::size_t j) {
-    return static_cast<double>(t - last_.stamp) / step_.ns - static_cast<double>(j + 1);
+    return (static_cast<double>(t - last_.stamp) + last_late) / step_.ns -
+           static_cast<double>(j + 1);
   };
   std::vector<double> lags{late(stamp, 0)};
   std::size_t item = 0, i = row;
@@ -251,28 +320,6 @@ std::int64_t TimeGrid::lag(const Pending& front,
     lags.push_back(late(t, j));
   }
   return common_lag(std::move(lags));
-}
-
-// The same odd step many times in a row is another sampling rate, not gaps.
-void TimeGrid::watch_rate(const Pending& front, std::size_t row, double ratio) {
-  const bool odd = ratio > 1.25 || ratio < 0.75;
-  if (!odd) {
-    odd_.times = 0;
-    odd_.ratio = 1;
-    return;
-  }
-  if (odd_.times == 0 || std::fabs(ratio - odd_.ratio) > 0.1 * odd_.ratio) {
-    odd_.times = 0;
-    odd_.ratio = ratio;
-    // The last row at the old distance.
-    odd_.place = row > 0 ? place(front, row - 1) : end_of_block_;
-  }
-  if (++odd_.times != kRateRun) return;
-  warnings_.add("rate_change",
-                fmt::format("the sampling rate changes ({} to {} Hz): the grid keeps the first",
-                            brief_text(1e9 / step_.ns, 6),
-                            brief_text(1e9 / (step_.ns * ratio), 6)),
-                odd_.place);
 }
 
 }  // namespace libchar

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "libchar/core/error.hpp"
@@ -14,6 +15,8 @@
 
 namespace libchar {
 namespace {
+
+constexpr std::int64_t kDayNs = 86400000000000;
 
 std::int64_t unit_in_ns(std::string_view unit) {
   const auto known = find_unit(unit);
@@ -35,11 +38,45 @@ std::string unit_name(std::int64_t ns) {
       return "min";
     case 3600000000000:
       return "h";
+    case kDayNs:
+      return "d";
     case 100000:
       return "100us";
     default:
       return fmt::format("{} ns", ns);
   }
+}
+
+/// Counts of days, by the day on which 1970 began; their stamps of 1990 to 2100 are told by their size.
+struct DayCount {
+  const char* name;
+  const char* word;  // in a column's name, which decides between two of one size
+  double of_1970;
+};
+constexpr std::array kDayCounts = {DayCount{"days since 1858-11-17 (MJD)", "mjd", 40587},
+                                   DayCount{"days of a spreadsheet, since 1899-12-30", "", 25569},
+                                   DayCount{"days of MATLAB's datenum", "", 719529},
+                                   DayCount{"Julian days", "", 2440587.5}};
+
+bool few_digits(double step) {
+  return std::fabs(step - rounded(step, 3)) <= 1e-6 * step;
+}
+
+/// Fractions of days: their steps are odd numbers that make whole milliseconds, or of no sensor when taken as
+/// seconds.
+const DayCount* day_count(const std::string& stem, const FirstValues& first) {
+  constexpr double kFrom = 7305, kTo = 47482, kFastest = 2e-4;  // 1990, 2100
+  const std::string name = ascii_lower(stem);
+  if (first.values.size() < 2) return nullptr;
+  const double step = usual_step(first.values), size = first.values[0];
+  for (const DayCount& count : kDayCounts) {
+    const bool said = *count.word != '\0' && name.find(count.word) != std::string::npos;
+    if (*count.word != '\0' && !said) continue;
+    if (size - count.of_1970 < kFrom || size - count.of_1970 > kTo) continue;
+    if (said || (!first.integers && step > 0 && step < 1 && (step < kFastest || !few_digits(step))))
+      return &count;
+  }
+  return nullptr;
 }
 
 std::int64_t unit_by_step(double step) {
@@ -75,15 +112,16 @@ std::int64_t guess_unit(const FirstValues& first) {
 }
 
 std::int64_t unit_from_options(const std::string& word) {
-  for (const char* known : {"s", "ms", "us", "ns"})
+  for (const char* known : {"s", "ms", "us", "ns", "min", "h"})
     if (word == known) return unit_in_ns(word);
+  if (word == "d") return kDayNs;
   if (word == "100us") return 100000;
   throw Error({ErrorKind::usage,
                "E0323",
                "",
                "unknown time unit",
                word,
-               "use auto, s, ms, us, ns or 100us"});
+               "use auto, s, ms, us, ns, min, h, d or 100us"});
 }
 
 // As the name or the file says; 0 when neither does.
@@ -142,32 +180,43 @@ void warn_of_stated_rate(const TableFront& table, double step, std::int64_t unit
 
 }  // namespace
 
-std::int64_t find_time_unit(const TableFront& table,
-                            std::size_t column,
-                            const ReadOptions& options,
-                            LogInfo& info) {
-  std::int64_t unit = options.time_unit != "auto" ? unit_from_options(options.time_unit)
-                                                  : unit_said(table.columns[column]);
+StampUnit find_time_unit(const TableFront& table,
+                         std::size_t column,
+                         const ReadOptions& options,
+                         LogInfo& info) {
+  const std::string stem = name_and_unit(table.columns[column].name).first;
+  StampUnit unit{options.time_unit != "auto" ? unit_from_options(options.time_unit)
+                                             : unit_said(table.columns[column])};
+  if (unit.ns == 0 && table.stated_tick_s) {
+    unit.ns = std::max<std::int64_t>(1, std::llround(*table.stated_tick_s * 1e9));
+    info.dialect.push_back(
+        fmt::format("stamps count {} s each, from the preamble", shortest(*table.stated_tick_s)));
+  }
   const FirstValues first = table.first_values(column);
   const double step = usual_step(first.values);
   const bool comparable = table.stated_rate_hz && step > 0 && first.values.size() > 3;
-  if (unit == 0) {
-    const bool fine =
-        ascii_lower(name_and_unit(table.columns[column].name).first) == "sampletimefine";
-    const std::int64_t guess = fine ? guess_fine(first) : guess_unit(first);
-    unit = comparable ? unit_of_rate(guess, step, *table.stated_rate_hz, info) : guess;
+  const DayCount* days = unit.ns == 0 || unit.ns == kDayNs ? day_count(stem, first) : nullptr;
+  if (days != nullptr) {
+    unit = {kDayNs, days->of_1970};
+    info.time.unit_guessed = options.time_unit == "auto";
+    info.guesses.push_back(fmt::format(
+        "time: {}, from the size of the stamps (`time_unit` says otherwise)", days->name));
+  } else if (unit.ns == 0) {
+    const std::int64_t guess =
+        ascii_lower(stem) == "sampletimefine" ? guess_fine(first) : guess_unit(first);
+    unit.ns = comparable ? unit_of_rate(guess, step, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
     info.guesses.push_back(fmt::format(
         "time unit: {}, from {} (`time_unit` says otherwise)",
-        unit_name(unit),
+        unit_name(unit.ns),
         comparable
             ? fmt::format("the rate of {} Hz that the file states", shortest(*table.stated_rate_hz))
             : "the size and step of the stamps"));
   } else if (comparable) {
-    warn_of_stated_rate(table, step, unit, info);
+    warn_of_stated_rate(table, step, unit.ns, info);
   }
-  info.time.unit = unit_name(unit);
-  info.time.unit_ns = unit;
+  info.time.unit = unit_name(unit.ns);
+  info.time.unit_ns = unit.ns;
   return unit;
 }
 

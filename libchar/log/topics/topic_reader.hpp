@@ -52,12 +52,12 @@ class TopicReader {
   }
 
   /// Called once, before the first row: what `next` is to deliver. `time` is a field that holds
-  /// stamps, one unit of which is `unit_ns` nanoseconds (exact where they are integers); absent
+  /// stamps, in that unit (exact where they are integers); absent
   /// when rows bring stamps of their own or there are none.
   virtual void select(std::size_t topic,
                       const std::vector<std::size_t>& fields,
                       std::optional<std::size_t> time,
-                      std::int64_t unit_ns) = 0;
+                      StampUnit unit) = 0;
 
   /// Appends up to `most` rows to a block whose columns (one a field, in the order of `select`)
   /// and, where there are stamps, time_ns are empty; sets block.rows. False at the end. Values as

@@ -182,8 +182,8 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
   }
   if (!losses.empty()) {
     const Warning& first = losses.list().front();
-    what += ": " + first.message;
-    if (!first.places.empty()) what += fmt::format(" ({})", first.places.front());
+    what += ": " + first.sentence;
+    if (!first.where.rows.empty()) what += fmt::format(" ({})", first.where.rows.front());
   }
   throw Error({ErrorKind::input, "E0426", file, std::move(what), std::move(got), std::move(hint)});
 }
@@ -337,10 +337,10 @@ class TopicRows final : public RowSource {
     const TableFront table = front();
     if (!own_stamps && (stamps.empty() || options.time_column != "none"))
       columns.time = find_time_column(table, options, info_);
-    std::int64_t unit_ns = 1;
+    StampUnit unit{1};
     if (columns.time) {
       info_.time.column = fields[*columns.time].name;
-      unit_ns = find_time_unit(table, *columns.time, options, info_);
+      unit = find_time_unit(table, *columns.time, options, info_);
     } else if (own_stamps) {
       info_.time.column = stamps;
       info_.time.unit = "ns";
@@ -354,7 +354,7 @@ class TopicRows final : public RowSource {
     missing_per_channel_.assign(chosen.size(), 0);
     rows_per_block_ =
         std::max<std::size_t>(1, options.block_bytes / (sizeof(double) * (chosen.size() + 1)));
-    reader_->select(topic_, chosen, columns.time, unit_ns);
+    reader_->select(topic_, chosen, columns.time, unit);
   }
 
   // Those asked for, or the usual ones; fields that are left out by default are said.

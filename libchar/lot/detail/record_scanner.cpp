@@ -144,7 +144,6 @@ bool scan_channel(Scanner& in, RecordedChannel& out) {
         !scan_values(in, out.values))
       return false;
   }
-  if (in.word(",\"problems\":[") && !scan_texts(in, out.problems)) return false;
   return in.word("}");
 }
 

@@ -96,8 +96,7 @@ void judge_tracking(AlgorithmResult& algorithm,
 
 void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result) {
   if (!algorithm.ran || !algorithm.watches_faults) return;
-  algorithm.answers =
-      answers_to(result.faults, algorithm.faults, result.start_s, run_end_s(result));
+  algorithm.answers = answers_to(result.faults, algorithm.faults, result.start_s, result.end_s());
 }
 
 namespace {

@@ -104,6 +104,32 @@ class SensorPath {
 
 }  // namespace
 
+std::size_t column_of(const LogInfo& log,
+                      const std::string& channel,
+                      const std::string& scene,
+                      const char* role) {
+  std::vector<std::string> names;
+  for (const Channel& one : log.channels) names.push_back(one.name);
+  const std::size_t column = position(names, channel);
+  if (column < names.size()) return column;
+  const auto near = nearest(channel, names);
+  throw Error({ErrorKind::input,
+               "E0900",
+               scene,
+               fmt::format("the {} {} has no channel of this name", role, log.file),
+               channel,
+               did_you_mean(near, "inspect lists the channels")});
+}
+
+Error of_scene(const Error& error, const std::string& file) {
+  Problem problem = error.problem();
+  if (problem.kind != ErrorKind::usage) return error;
+  problem.kind = ErrorKind::input;
+  if (problem.code.empty()) problem.code = "E0900";
+  if (problem.where.empty() || problem.where.starts_with("--")) problem.where = file;
+  return Error(problem);
+}
+
 SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene) {
   want_channels();
   known_faults_ = scene.faults;
@@ -163,7 +189,8 @@ void SceneSource::read_even(Progress& progress) {
                                      *scene_->resample_hz,
                                      scene_->tilt ? scene_->sensors.size() : wanted_.size(),
                                      progress);
-  even_ = std::move(even.samples);
+  kept_ = std::move(even.samples);
+  for (std::size_t k = 0; k < kept_.size(); ++k) columns_.push_back(k);
   info_.kept = true;
   info_.rate_hz = *scene_->resample_hz;
   info_.samples = even.log.samples;
@@ -173,7 +200,7 @@ void SceneSource::read_even(Progress& progress) {
         (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(channel.unit);
   info_.logs.push_back(std::move(even.log));
   for (std::size_t k = 0; k < scene_->sensors.size(); ++k)
-    note_presence(info_.presence.emplace_back(), 0, even_[k]);
+    note_presence(info_.presence.emplace_back(), 0, kept_[k]);
 }
 
 void SceneSource::scan(Progress& progress) {
@@ -191,26 +218,10 @@ void SceneSource::scan(Progress& progress) {
   try {
     log = read_log(scene_->recording, reading_, first, progress);
   } catch (const Error& error) {
-    // What a scene asks of a file is the scene's mistake, not one of the command line.
-    if (error.problem().kind != ErrorKind::usage) throw;
-    Problem problem = error.problem();
-    problem.kind = ErrorKind::input;
-    if (problem.code.empty()) problem.code = "E0900";
-    if (problem.where.empty() || problem.where.starts_with("--")) problem.where = scene_->recording;
-    throw Error(problem);
+    throw of_scene(error, scene_->recording);
   }
-  std::vector<std::string> names;
-  for (const Channel& channel : log.channels) names.push_back(channel.name);
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
-    const std::size_t column = position(names, wanted_[k]);
-    if (column == names.size()) {
-      const auto near = nearest(wanted_[k], names);
-      refuse(*scene_,
-             "E0900",
-             fmt::format("the recording {} has no channel of this name", scene_->recording),
-             wanted_[k],
-             did_you_mean(near, "inspect lists the channels"));
-    }
+    const std::size_t column = column_of(log, wanted_[k], scene_->file, "recording");
     columns_.push_back(column);
     if (k >= own_) continue;
     if (k < scene_->sensors.size())
@@ -235,8 +246,6 @@ void SceneSource::scan(Progress& progress) {
 void SceneSource::stream(std::uint64_t until, const SourceBlock& block, Progress& progress) const {
   if (scene_->simulate)
     stream_simulation(until, block, progress);
-  else if (!even_.empty())
-    stream_even(until, block);
   else if (!kept_.empty())
     stream_kept(until, block);
   else
@@ -254,18 +263,6 @@ std::vector<std::vector<double>> SceneSource::reference_columns(Progress& progre
       },
       progress);
   return out;
-}
-
-void SceneSource::stream_even(std::uint64_t until, const SourceBlock& block) const {
-  SensorPath path(*scene_, info_.rate_hz, scene_->simulated ? scene_->simulated->seed : 1);
-  const auto rows = static_cast<std::size_t>(std::min(until, info_.samples));
-  if (rows == 0) return;
-  std::vector<std::span<const double>> out;
-  for (std::size_t k = 0; k < even_.size(); ++k) {
-    const std::span<const double> column(even_[k].data(), rows);
-    out.push_back(k < scene_->sensors.size() ? path(k, column) : column);
-  }
-  block(0, out);
 }
 
 void SceneSource::stream_kept(std::uint64_t until, const SourceBlock& block) const {

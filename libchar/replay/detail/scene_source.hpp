@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/error.hpp"
 #include "libchar/core/process/progress.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/scene/scene.hpp"
@@ -30,6 +31,15 @@ struct SourceInfo {
   std::vector<Presence> presence;            ///< of the sensors; empty for a simulation
   bool kept = false;                         ///< in memory, not read again for each pass
 };
+
+/// Of a recording or a reference (`role`) that the scene names. Throws Error(input).
+std::size_t column_of(const LogInfo& log,
+                      const std::string& channel,
+                      const std::string& scene,
+                      const char* role);
+
+/// What a scene asks of a file is the scene's mistake, not one of the command line.
+Error of_scene(const Error& error, const std::string& file);
 
 /// Consecutive samples: the sensors (scaled, faults injected), then the reference channels that
 /// stand in the same recording, then axis by axis the further axes of all sensors (as recorded).
@@ -55,7 +65,6 @@ class SceneSource {
   void describe_simulation();
   void scan(Progress& progress);
   void read_even(Progress& progress);
-  void stream_even(std::uint64_t until, const SourceBlock& block) const;
   void stream_kept(std::uint64_t until, const SourceBlock& block) const;
   void stream_recording(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
   void stream_simulation(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
@@ -66,8 +75,7 @@ class SceneSource {
   std::vector<std::string> wanted_;        // channels of the recording, sensors first
   std::size_t own_ = 0;                    // of `wanted_`: without the further axes
   std::vector<std::size_t> columns_;       // of the source, for each of `wanted_`
-  std::vector<std::vector<double>> even_;  // a resampled recording, for each of `wanted_`
-  std::vector<std::vector<double>> kept_;  // a short text, by column of the source
+  std::vector<std::vector<double>> kept_;  // a short text or a resampled recording, by column
   SourceInfo info_;
   std::vector<SensorFault> known_faults_;
 };

@@ -14,12 +14,14 @@ namespace {
 constexpr std::string_view kPartNames[] = {"offset", "gain", "cross", "delay", "jitter", "noise"};
 
 // "0.31 ± 0.02": the digits that the error leaves.
-std::string with_error(double value, double error, double scale = 1) {
-  if (!std::isfinite(error)) return value == 0 ? "–" : brief_text(scale * value, 3);
+Cell with_error(double value, double error, double scale = 1) {
+  if (!std::isfinite(error))
+    return Cell::shown(value == 0 ? "–" : brief_text(scale * value, 3), value);
   const double size = scale * error;
   const int decimals =
       size > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(size))), 0, 9) : 3;
-  return fmt::format("{:.{}f} ± {:.{}f}", scale * value, decimals, size, decimals);
+  return Cell::shown(fmt::format("{:.{}f} ± {:.{}f}", scale * value, decimals, size, decimals),
+                     value);
 }
 
 std::string share_text(const fusion::PartShare& part) {
@@ -29,42 +31,45 @@ std::string share_text(const fusion::PartShare& part) {
       "{} % ({} … {})", percent(part.share), percent(part.ci95.low), percent(part.ci95.high));
 }
 
-WordTable learnt_table(const ReplayResult& r, const AlignmentResult& a) {
-  WordTable out;
-  const std::string unit = r.inputs[0].unit;
-  out.head = {"sensor", "delay, samples", unit.empty() ? "bias" : "bias, " + unit, "gain, %"};
+std::string with_unit_of(const ReplayResult& r, const char* head) {
+  return r.inputs[0].unit.empty() ? head : fmt::format("{}, {}", head, r.inputs[0].unit);
+}
+
+Table learnt_table(const ReplayResult& r, const AlignmentResult& a) {
+  Table out("sensor|delay, samples||gain, %");
+  out.columns[2].head = with_unit_of(r, "bias");
   const std::size_t axes = a.learnt.channels[0].cross.size();
   for (std::size_t k = 0; k < axes; ++k)
-    out.head.push_back(axes == 1 ? "cross-axis, %" : fmt::format("cross-axis {}, %", k + 1));
+    out.columns.push_back({axes == 1 ? "cross-axis, %" : fmt::format("cross-axis {}, %", k + 1)});
   for (std::size_t i = 0; i < a.learnt.channels.size(); ++i) {
     const fusion::ChannelAlignment& c = a.learnt.channels[i];
-    std::vector<std::string> row = {r.sensors[i].name,
-                                    with_error(c.delay, c.delay_se),
-                                    with_error(c.bias, c.bias_se),
-                                    with_error(c.gain, c.gain_se, 100)};
+    std::vector<Cell> row = {r.sensors[i].name,
+                             with_error(c.delay, c.delay_se),
+                             with_error(c.bias, c.bias_se),
+                             with_error(c.gain, c.gain_se, 100)};
     for (std::size_t k = 0; k < axes; ++k)
       row.push_back(with_error(c.cross[k], c.cross_se[k], 100));
-    out.rows.push_back(std::move(row));
+    out.add(std::move(row));
   }
   return out;
 }
 
-WordTable budget_table(const ReplayResult& r, const AlignmentResult& a) {
-  WordTable out;
-  const std::string unit = r.inputs[0].unit;
-  out.head = {"sensor", unit.empty() ? "RMS" : "RMS, " + unit};
-  for (const std::string_view part : kPartNames) out.head.emplace_back(part);
+Table budget_table(const ReplayResult& r, const AlignmentResult& a) {
+  Table out("sensor||offset|gain|cross|delay|jitter|noise");
+  out.title = "Error budget, shares of the mean square";
+  out.columns[1].head = with_unit_of(r, "RMS");
   for (std::size_t k = 0; k < a.budget.channels.size(); ++k) {
     const fusion::ChannelBudget& c = a.budget.channels[k];
-    std::vector<std::string> row = {r.sensors[a.budgeted[k]].name, brief_text(c.rms, 4)};
-    for (const fusion::PartShare& part : c.parts) row.push_back(share_text(part));
-    out.rows.push_back(std::move(row));
+    std::vector<Cell> row = {r.sensors[a.budgeted[k]].name, brief_text(c.rms, 4)};
+    for (const fusion::PartShare& part : c.parts)
+      row.push_back(Cell::shown(share_text(part), part.share));
+    out.add(std::move(row));
   }
   if (a.budget.instants < 1) return out;
-  std::vector<std::string> all = {"fused, were it gone", ""};
+  std::vector<Cell> all = {"fused, were it gone", ""};
   for (const double saving : a.budget.savings)
-    all.push_back(fmt::format("{:+.1f} %", -100 * saving));
-  out.rows.push_back(std::move(all));
+    all.push_back(Cell::shown(fmt::format("{:+.1f} %", -100 * saving), saving));
+  out.add(std::move(all));
   return out;
 }
 

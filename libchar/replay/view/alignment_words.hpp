@@ -4,19 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/table/table.hpp"
 #include "libchar/replay/replay_result.hpp"
 
 namespace libchar {
 
-struct WordTable {
-  std::vector<std::string> head;
-  std::vector<std::vector<std::string>> rows;
-};
-
 struct AlignmentWords {
   std::vector<std::string> sentences;
-  WordTable learnt;  ///< a row a sensor: its terms with their standard errors
-  WordTable budget;  ///< a row a sensor, and one of all: shares of the mean square error
+  Table learnt;  ///< a row a sensor: its terms with their standard errors
+  Table budget;  ///< a row a sensor, and one of all: shares of the mean square error
 };
 
 /// Name of a part, in tables and JSON: offset, gain, cross, delay, jitter, noise.

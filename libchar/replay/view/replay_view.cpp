@@ -125,7 +125,7 @@ std::vector<AlgorithmRemark> remarks_of(const ReplayResult& r) {
   std::vector<AlgorithmRemark> out;
   for (const AlgorithmResult& a : r.algorithms)
     for (const Warning& w : a.remarks.list())
-      out.push_back({w.message.starts_with(a.label) ? "" : a.label, w.message, w.count});
+      out.push_back({w.sentence.starts_with(a.label) ? "" : a.label, w.sentence, w.count});
   return out;
 }
 
@@ -206,7 +206,7 @@ std::vector<RunMark> marks_of(const ReplayResult& r, double end_s) {
     add_mark(out,
              {"fault",
               fault_label(r, fault),
-              fault.sensor < r.sensors.size() ? std::optional(fault.sensor) : std::nullopt,
+              fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "",
               fault.from_s,
               fault.to_s},
              r.start_s,

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/benchmark/figure.hpp"
+#include "libchar/benchmark/bench_report.hpp"
 #include "libchar/core/document/json.hpp"
 
 namespace libchar {
@@ -28,9 +28,8 @@ struct BenchChanges {
   std::vector<BenchChange> worse(double tolerance) const;
 };
 
-/// Of two documents (bench_json). Throws Error(input) for an older one that is none, or of other records and runs: its figures would be of
-/// something else.
-BenchChanges bench_changes(const Json& was, const Json& now, const std::string& file);
+/// Throws Error(input) for an older one of other records and runs: its figures would be of something else.
+BenchChanges bench_changes(const BenchReport& was, const BenchReport& now, const std::string& file);
 
 std::string changes_text(const BenchChanges& changes, double tolerance);
 Json changes_json(const BenchChanges& changes, double tolerance);

@@ -11,7 +11,6 @@
 
 namespace libchar {
 
-Json bench_json(const BenchReport& report);
 std::string bench_text(const BenchReport& report);
 std::string bench_markdown(const BenchReport& report);
 std::string bench_html(const BenchReport& report);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/table/table.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
@@ -45,6 +46,24 @@ std::string where_is(const ComparedChannel& c) {
   return c.in_a ? c.in_b ? "" : "only in A" : "only in B";
 }
 
+Table compared_table(const CharacterizationComparison& comparison) {
+  Table out("channel|term|A|B|unit|");
+  for (const ComparedChannel& c : comparison.channels) {
+    if (!where_is(c).empty()) out.add({c.name, "", "", "", "", where_is(c)});
+    for (const ComparedTerm& t : c.terms) {
+      const auto key = kTermNames[static_cast<std::size_t>(t.term)].key;
+      out.add({c.name,
+               key,
+               coefficient_text(t.a),
+               coefficient_text(t.b),
+               term_unit(key, c.unit),
+               t.sentence});
+    }
+    for (const std::string& remark : c.remarks) out.add({c.name, "", "", "", "", remark});
+  }
+  return out;
+}
+
 }  // namespace
 
 Json comparison_json(const CharacterizationComparison& comparison) {
@@ -66,50 +85,21 @@ Json comparison_json(const CharacterizationComparison& comparison) {
   return out;
 }
 
-std::string comparison_text(const CharacterizationComparison& comparison) {
+std::string comparison_text(const CharacterizationComparison& comparison, std::size_t width) {
   std::string out = fmt::format("A: {} ({})\nB: {} ({})\n",
                                 printable(comparison.a.file),
                                 printable(comparison.a.recording),
                                 printable(comparison.b.file),
                                 printable(comparison.b.recording));
-  for (const ComparedChannel& c : comparison.channels) {
-    const std::string where = where_is(c);
-    out += "\n" + printable(c.name) + (where.empty() ? "" : ": " + where) + "\n";
-    for (const ComparedTerm& t : c.terms)
-      out += fmt::format(
-          "  {:<17} A {}, B {} {}: {}\n",
-          kTermNames[static_cast<std::size_t>(t.term)].key,
-          value_text(t.a),
-          value_text(t.b),
-          printable(term_unit(kTermNames[static_cast<std::size_t>(t.term)].key, c.unit)),
-          printable(t.sentence));
-    for (const std::string& remark : c.remarks) out += "  " + printable(remark) + "\n";
-  }
-  return out + "\n" + printable(comparison.verdict) + "\n";
+  return out + "\n" + terminal_table(compared_table(comparison), {width}, "") + "\n" +
+         printable(comparison.verdict) + "\n";
 }
 
 std::string comparison_markdown(const CharacterizationComparison& comparison) {
-  std::string out = "# Two characterizations\n\n" + markdown_text(comparison.verdict) +
-                    "\n\n- A: " + markdown_text(comparison.a.file) +
-                    "\n- B: " + markdown_text(comparison.b.file) +
-                    "\n\n| channel | term | A | B | unit | |\n|---|---|---|---|---|---|\n";
-  for (const ComparedChannel& c : comparison.channels) {
-    if (!where_is(c).empty())
-      out += fmt::format("| {} | | | | | {} |\n", markdown_text(c.name), where_is(c));
-    for (const ComparedTerm& t : c.terms) {
-      const auto key = kTermNames[static_cast<std::size_t>(t.term)].key;
-      out += fmt::format("| {} | {} | {} | {} | {} | {} |\n",
-                         markdown_text(c.name),
-                         key,
-                         markdown_text(coefficient_text(t.a)),
-                         markdown_text(coefficient_text(t.b)),
-                         markdown_text(term_unit(key, c.unit)),
-                         markdown_text(t.sentence));
-    }
-    for (const std::string& remark : c.remarks)
-      out += fmt::format("| {} | | | | | {} |\n", markdown_text(c.name), markdown_text(remark));
-  }
-  return out;
+  return "# Two characterizations\n\n" + markdown_text(comparison.verdict) +
+         "\n\n- A: " + markdown_text(comparison.a.file) +
+         "\n- B: " + markdown_text(comparison.b.file) + "\n\n" +
+         table_text(compared_table(comparison));
 }
 
 }  // namespace libchar

@@ -10,7 +10,7 @@ namespace libchar {
 
 /// The keys behind the head of {"format":"characterization-comparison","version":1,…} (docs/recordings.md).
 Json comparison_json(const CharacterizationComparison& comparison);
-std::string comparison_text(const CharacterizationComparison& comparison);
+std::string comparison_text(const CharacterizationComparison& comparison, std::size_t width = 0);
 /// One page of Markdown.
 std::string comparison_markdown(const CharacterizationComparison& comparison);
 

@@ -7,48 +7,54 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/report_rows.hpp"
+#include "libchar/report/detail/tables/scores.hpp"
 
 namespace libchar {
 namespace {
 
-Json side(const AlgorithmSummary* one) {
-  if (one == nullptr) return nullptr;
-  return {{"status", one->ran ? "ran" : "skipped"},
-          {"why", one->ran ? Json(nullptr) : Json(json_text(one->why))},
-          {"rmse", json_number(one->rmse)},
-          {"rmse_ci95", interval_json(one->rmse_ci95)},
-          {"regret", json_number(one->regret)},
-          {"ns_per_sample", json_number(one->ns_per_sample)},
-          {"peak_bytes", json_number(one->peak_bytes)}};
+template <const ReplayReport::Algorithm* ComparedAlgorithm::*Side>
+void write_side(const Field& row, const ComparedAlgorithm& compared, std::vector<Entry>& out) {
+  static const Fields<ReplayReport::Algorithm> rows =
+      selected(ReplayReport::Algorithm::fields(),
+               {"status", "why", "rmse", "rmse_ci95", "regret", "ns_per_sample", "peak_bytes"},
+               Written::always);
+  const ReplayReport::Algorithm* const one = compared.*Side;
+  out.push_back(one == nullptr ? Entry{std::string(row.key)}
+                               : part_entry(std::string(row.key), entries_of(rows, *one)));
 }
 
-Json report(const ReplaySummary& r) {
-  return {{"file", json_text(r.file)},
-          {"program", r.program.empty() ? Json(nullptr) : Json(json_text(r.program))},
-          {"scene", json_text(r.scene_name.empty() ? r.scene_file : r.scene_name)},
-          {"best", r.best.empty() ? Json(nullptr) : Json(json_text(r.best))}};
+const Fields<ComparedAlgorithm> kComparedFields = always(Fields<ComparedAlgorithm>{
+    field<&ComparedAlgorithm::label>("label"),
+    written<ComparedAlgorithm, write_side<&ComparedAlgorithm::a>>("a", ""),
+    written<ComparedAlgorithm, write_side<&ComparedAlgorithm::b>>("b", ""),
+    field<&ComparedAlgorithm::difference>("difference"),
+    field<&ComparedAlgorithm::rmse_change>("rmse_change"),
+    field<&ComparedAlgorithm::ns_change>("ns_per_sample_change"),
+    field<&ComparedAlgorithm::bytes_change>("peak_bytes_change"),
+});
+
+const Fields<ReplayReport> kSideFields = always(Fields<ReplayReport>{
+    field<&ReplayReport::file>("file"),
+    field_or_null<&ReplayReport::head, &DocumentHead::program>("program"),
+    computed<[](const ReplayReport& report) { return report.scene_title(); }>("scene"),
+    field_or_null<&ReplayReport::best>("best"),
+});
+
+/// What is compared of a method: NaN where it did not run.
+struct Scores {
+  double rmse = kNone, ns_per_sample = kNone, peak_bytes = kNone;
+};
+Scores scores_of(const ReplayReport::Algorithm* one) {
+  if (one == nullptr || !one->ran) return {};
+  return {one->rmse,
+          one->ns_per_sample,
+          one->peak_bytes ? static_cast<double>(*one->peak_bytes) : kNone};
 }
 
-Json sentences(const std::vector<std::string>& list) {
-  Json out = Json::array();
-  for (const std::string& sentence : list) out.push_back(json_text(sentence));
-  return out;
-}
-
-std::string bytes(double value) {
-  return bytes_text(std::isfinite(value) ? std::optional(static_cast<std::uint64_t>(value))
-                                         : std::nullopt);
-}
-
-double value(const AlgorithmSummary* one, double AlgorithmSummary::*member) {
-  return one != nullptr && one->ran ? one->*member : std::nan("");
-}
-
-}  // namespace
-
+/// "+4.62 %", "0 %"; "–" for no number.
 std::string change_text(double change) {
   if (!std::isfinite(change)) return "–";
   if (change == 0) return "0 %";
@@ -57,6 +63,8 @@ std::string change_text(double change) {
                                    : fmt::format("{:+.2f} %", percent);
 }
 
+}  // namespace
+
 std::string side_of(const ComparedAlgorithm& row) {
   if (row.both_ran()) return "";
   if (row.a == nullptr) return row.b->ran ? "only in B" : "only in B, skipped";
@@ -64,71 +72,70 @@ std::string side_of(const ComparedAlgorithm& row) {
   return row.a->ran ? "skipped in B" : row.b->ran ? "skipped in A" : "skipped in both";
 }
 
-Json comparison_json(const Comparison& c) {
-  Json out = {{"a", report(c.a)},
-              {"b", report(c.b)},
-              {"verdict", json_text(c.verdict)},
-              {"score", c.a.has_reference ? "rmse" : "predictive_rms"},
-              {"unlike", sentences(c.unlike)},
-              {"remarks", sentences(c.remarks)},
-              {"algorithms", Json::array()}};
-  for (const ComparedAlgorithm& row : c.algorithms)
-    out["algorithms"].push_back({{"label", json_text(row.label)},
-                                 {"a", side(row.a)},
-                                 {"b", side(row.b)},
-                                 {"difference", name_of(row.difference)},
-                                 {"rmse_change", json_number(row.rmse_change)},
-                                 {"ns_per_sample_change", json_number(row.ns_change)},
-                                 {"peak_bytes_change", json_number(row.bytes_change)}});
-  return out;
-}
+namespace {
 
-std::string comparison_text(const Comparison& c, std::size_t width) {
-  std::string out =
-      fmt::format("A: {}: {}\nB: {}: {}\n",
-                  printable(c.a.file),
-                  printable(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
-                  printable(c.b.file),
-                  printable(c.b.scene_name.empty() ? c.b.scene_file : c.b.scene_name));
-  for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
-  for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
-  const std::string score = c.a.has_reference ? "RMSE" : "leave-one-out";
-  std::vector<std::vector<std::string>> rows = {{"algorithm",
-                                                 score + " A",
-                                                 score + " B",
-                                                 "change",
-                                                 "ns/sample A",
-                                                 "B",
-                                                 "change",
-                                                 "memory A",
-                                                 "B",
-                                                 "error of B"}};
+Table compared_table(const Comparison& c) {
+  const std::string score = c.a.reference ? "RMSE" : "leave-one-out RMS";
+  Table out("algorithm|" + score + " A|" + score +
+            " B|change|a sample A|B|change|memory A|B|error of B");
   for (const ComparedAlgorithm& row : c.algorithms) {
     const std::string where = side_of(row);
     if (where == "skipped in both") continue;
-    rows.push_back({printable(row.label),
-                    brief_text(value(row.a, &AlgorithmSummary::rmse), 5),
-                    brief_text(value(row.b, &AlgorithmSummary::rmse), 5),
-                    change_text(row.rmse_change),
-                    brief_text(value(row.a, &AlgorithmSummary::ns_per_sample), 3),
-                    brief_text(value(row.b, &AlgorithmSummary::ns_per_sample), 3),
-                    change_text(row.ns_change),
-                    bytes(value(row.a, &AlgorithmSummary::peak_bytes)),
-                    bytes(value(row.b, &AlgorithmSummary::peak_bytes)),
-                    where.empty() ? std::string(name_of(row.difference)) : where});
+    const Scores a = scores_of(row.a), b = scores_of(row.b);
+    out.add({row.label,
+             brief_text(a.rmse, 5),
+             brief_text(b.rmse, 5),
+             change_text(row.rmse_change),
+             time_cell(a.ns_per_sample),
+             time_cell(b.ns_per_sample),
+             change_text(row.ns_change),
+             memory_cell(a.peak_bytes),
+             memory_cell(b.peak_bytes),
+             where.empty() ? std::string(name_of(row.difference)) : where});
   }
-  return out + "\n" + text_table(rows, "", true, width) + "\n" + printable(c.verdict) + "\n";
+  return out;
+}
+
+}  // namespace
+
+const Fields<Comparison>& comparison_fields() {
+  using T = Comparison;
+  static const Fields<T> rows = always(Fields<T>{
+      part<&T::a>("a", kSideFields),
+      part<&T::b>("b", kSideFields),
+      field<&T::verdict>("verdict"),
+      computed<[](const T& c) { return c.a.reference ? "rmse" : "predictive_rms"; }>("score"),
+      field<&T::unlike>("unlike"),
+      field<&T::remarks>("remarks"),
+      list_of<&T::algorithms>("algorithms", kComparedFields),
+  });
+  return rows;
+}
+
+Json comparison_json(const Comparison& comparison) {
+  return document_of(comparison_fields(), comparison);
+}
+
+std::string comparison_text(const Comparison& c, std::size_t width) {
+  std::string out = fmt::format("A: {}: {}\nB: {}: {}\n",
+                                printable(c.a.file),
+                                printable(c.a.scene_title()),
+                                printable(c.b.file),
+                                printable(c.b.scene_title()));
+  for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
+  for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
+  return out + "\n" + terminal_table(compared_table(c), {width}, "") + "\n" + printable(c.verdict) +
+         "\n";
 }
 
 std::string comparison_markdown(const Comparison& c) {
-  std::string out =
-      fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
-                  markdown_text(c.a.scene_name.empty() ? c.a.scene_file : c.a.scene_name),
-                  markdown_text(c.verdict),
-                  markdown_text(c.a.file),
-                  markdown_text(c.a.program),
-                  markdown_text(c.b.file),
-                  markdown_text(c.b.program));
+  std::string out = fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
+                                markdown_text(c.a.scene_title()),
+                                markdown_text(c.verdict),
+                                markdown_text(c.a.file),
+                                markdown_text(c.a.head.program),
+                                markdown_text(c.b.file),
+                                markdown_text(c.b.head.program));
   const char* heads[] = {"These are not two replays of one scene:", "What else differs:"};
   const std::vector<std::string>* lists[] = {&c.unlike, &c.remarks};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -137,27 +144,8 @@ std::string comparison_markdown(const Comparison& c) {
     for (const std::string& sentence : *lists[i])
       out += fmt::format("- {}\n", markdown_text(sentence));
   }
-  const char* score = c.a.has_reference ? "RMSE" : "leave-one-out RMS";
-  out += fmt::format(
-      "\n| algorithm | {} A | {} B | change | resolved | a sample A | a sample B | memory A | "
-      "memory B |\n|---|---|---|---|---|---|---|---|---|\n",
-      score,
-      score);
-  for (const ComparedAlgorithm& row : c.algorithms) {
-    const std::string where = side_of(row);
-    if (where == "skipped in both") continue;
-    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                       markdown_text(row.label),
-                       brief_text(value(row.a, &AlgorithmSummary::rmse), 5),
-                       brief_text(value(row.b, &AlgorithmSummary::rmse), 5),
-                       change_text(row.rmse_change),
-                       where.empty() ? std::string(name_of(row.difference)) : where,
-                       duration_text(1e-9 * value(row.a, &AlgorithmSummary::ns_per_sample)),
-                       duration_text(1e-9 * value(row.b, &AlgorithmSummary::ns_per_sample)),
-                       bytes(value(row.a, &AlgorithmSummary::peak_bytes)),
-                       bytes(value(row.b, &AlgorithmSummary::peak_bytes)));
-  }
-  return out + "\nResolved: the 95 % intervals of the two do not overlap.\n";
+  return out + "\n" + table_text(compared_table(c)) +
+         "\nResolved: the 95 % intervals of the two do not overlap.\n";
 }
 
 }  // namespace libchar

@@ -18,9 +18,6 @@ std::string comparison_text(const Comparison& comparison, std::size_t width = 0)
 /// One page of Markdown.
 std::string comparison_markdown(const Comparison& comparison);
 
-/// "+4.62 %", "0 %"; "–" for no number.
-std::string change_text(double change);
-
 /// Why an algorithm has no change, as far as the reports say: "only in A", "skipped in B"; empty
 /// when it ran in both.
 std::string side_of(const ComparedAlgorithm& row);

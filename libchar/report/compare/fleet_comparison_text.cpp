@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/table/table.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
@@ -41,27 +41,34 @@ Json difference_json(const LotDifference& d) {
           {"sentence", json_text(d.sentence)}};
 }
 
-std::vector<std::string> comparison_row(const LotDifference& d) {
+std::string changed(const LotDifference& d) {
   const bool logarithm = in_logarithm(d.quantity);
-  const auto of = [&](const LotFigures& f) { return number_text(f.mean) + " " + d.unit; };
-  const auto change = [&](double value) {
+  const auto shown = [&](double value) {
     return number_text(logarithm ? 100 * (value - 1) : value, 3);
   };
-  const std::string differs = d.mean_differs && d.spread_differs ? "mean and spread"
-                              : d.mean_differs                   ? "mean"
-                              : d.spread_differs                 ? "spread"
-                                                                 : "";
-  return {d.type.empty() ? d.group : d.group + " of " + d.type,
-          title_of(d.quantity),
-          of(d.a),
-          of(d.b),
-          fmt::format("{} [{}, {}]{}",
-                      change(d.change),
-                      change(d.change_ci95.low),
-                      change(d.change_ci95.high),
-                      logarithm ? " %" : " " + d.unit),
-          fmt::format("{} and {}", d.counts_a.counted, d.counts_b.counted),
-          differs};
+  return fmt::format("{} [{}, {}]{}",
+                     shown(d.change),
+                     shown(d.change_ci95.low),
+                     shown(d.change_ci95.high),
+                     logarithm ? " %" : " " + d.unit);
+}
+
+Table differences_table(const FleetComparison& c) {
+  Table out("channel|what|mean of |mean of |change|counted|differs");
+  out.columns[2].head += c.name_a;
+  out.columns[3].head += c.name_b;
+  for (const LotDifference& d : c.differences)
+    out.add({d.type.empty() ? d.group : d.group + " of " + d.type,
+             title_of(d.quantity),
+             number_text(d.a.mean) + " " + d.unit,
+             number_text(d.b.mean) + " " + d.unit,
+             changed(d),
+             fmt::format("{} and {}", d.counts_a.counted, d.counts_b.counted),
+             d.mean_differs && d.spread_differs ? "mean and spread"
+             : d.mean_differs                   ? "mean"
+             : d.spread_differs                 ? "spread"
+                                                : ""});
+  return out;
 }
 
 /// Why a change whose interval leaves zero out need not differ.
@@ -99,19 +106,8 @@ std::string fleet_comparison_text(const FleetComparison& c, std::size_t width) {
   std::string out = printable(c.verdict) + "\n";
   for (const LotDifference& d : c.differences)
     if (d.mean_differs || d.spread_differs) out += "  " + printable(d.sentence) + "\n";
-  std::vector<std::vector<std::string>> rows = {{"channel",
-                                                 "what",
-                                                 "mean of " + printable(c.name_a),
-                                                 "mean of " + printable(c.name_b),
-                                                 "change",
-                                                 "counted",
-                                                 "differs"}};
-  for (const LotDifference& d : c.differences) {
-    rows.push_back(comparison_row(d));
-    for (std::string& cell : rows.back()) cell = printable(cell);
-  }
-  if (rows.size() > 1) out += "\n" + text_table(rows, "  ", true, width);
-  if (rows.size() > 1) out += "  " + corrected_note(c) + "\n";
+  if (!c.differences.empty())
+    out += "\n" + terminal_table(differences_table(c), {width}) + "  " + corrected_note(c) + "\n";
   if (!c.not_compared.empty() || !c.notes.empty()) out += "\n";
   for (const std::string& sentence : c.notes) out += "  " + printable(sentence) + "\n";
   for (const std::string& sentence : c.not_compared) out += "  " + printable(sentence) + "\n";

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "libchar/core/document/json.hpp"
+#include "libchar/core/text/markup.hpp"
 
 namespace libchar {
 
@@ -28,8 +29,5 @@ std::string json_in_script(const Json& document);
 
 /// For the inside of an HTML comment: "--" cannot occur, so the comment ends where we end it.
 std::string html_comment(std::string_view text);
-
-/// For Markdown: no mark of it becomes a tag, link, column or line.
-std::string markdown_text(std::string_view text);
 
 }  // namespace libchar

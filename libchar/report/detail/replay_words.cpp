@@ -1,12 +1,14 @@
 #include "libchar/report/detail/replay_words.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/replay/view/preparation_words.hpp"
 
 namespace libchar {
 
@@ -34,6 +36,43 @@ std::string instant_text(double seconds) {
 
 std::string stretch_text(double from_s, double to_s) {
   return instant_text(from_s) + " … " + (std::isfinite(to_s) ? instant_text(to_s) : "the end");
+}
+
+std::vector<std::string> run_facts(const ReplayView& view) {
+  const ReplayResult& r = *view.result;
+  std::vector<std::string> out = {fmt::format("{} sensors, {} instants at {} Hz from {}, {}.",
+                                              r.sensors.size(),
+                                              r.instants,
+                                              brief_text(r.rate_hz, 6),
+                                              instant_text(r.start_s),
+                                              duration_text(view.duration_s))};
+  out.push_back(r.has_reference ? "Reference: " + r.reference_use + "." : "No reference.");
+  for (const InputResult& input : r.inputs)
+    if (r.has_reference && std::isfinite(input.optimum_rmse))
+      out.push_back(fmt::format("Optimum of {}{}: RMSE {}.",
+                                view.optimum,
+                                r.inputs.size() > 1 ? " for " + input.name : "",
+                                with_unit(input.optimum_rmse, 4, usual_unit(input.unit))));
+  if (r.lag_estimated)
+    out.push_back(
+        fmt::format("The sensors lag the reference by {} (estimated).", duration_text(r.lag_s)));
+  for (std::string& sentence : preparation_words(r)) out.push_back(std::move(sentence));
+  return out;
+}
+
+std::vector<std::string> skipped_words(const ReplayView& view) {
+  std::vector<std::string> out;
+  for (const SkippedAlgorithms& s : view.skipped)
+    out.push_back(fmt::format("{}: {}", fmt::join(s.labels, ", "), s.reason));
+  return out;
+}
+
+std::vector<std::string> remark_words(const ReplayView& view) {
+  std::vector<std::string> out;
+  for (const AlgorithmRemark& remark : view.remarks)
+    out.push_back((remark.label.empty() ? "" : remark.label + ": ") + remark.message +
+                  (remark.count > 1 ? fmt::format(" ({} ×)", remark.count) : ""));
+  return out;
 }
 
 }  // namespace libchar

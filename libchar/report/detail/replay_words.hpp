@@ -1,9 +1,10 @@
 #pragma once
-// Numbers of a replay as its page writes them.
+// Numbers and facts of a replay as its reports write them.
 
 #include <string>
+#include <vector>
 
-#include "libchar/replay/replay_result.hpp"
+#include "libchar/replay/view/replay_view.hpp"
 
 namespace libchar {
 
@@ -18,5 +19,12 @@ std::string usual_unit(const std::string& unit);
 std::string instant_text(double seconds);
 /// "400 s … 500 s", "600 s … the end".
 std::string stretch_text(double from_s, double to_s);
+
+/// Sensors, instants, optimum, lag, preparation: a sentence each.
+std::vector<std::string> run_facts(const ReplayView& view);
+/// "minque, mean: needs a reference", one a reason.
+std::vector<std::string> skipped_words(const ReplayView& view);
+/// What the algorithms remark.
+std::vector<std::string> remark_words(const ReplayView& view);
 
 }  // namespace libchar

@@ -2,6 +2,7 @@
 
 #include "libchar/characterize/curves/curve_document.hpp"
 #include "libchar/core/document/coefficient_fields.hpp"
+#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
@@ -65,7 +66,7 @@ const Fields<SummaryOfChannel>& summary_fields() {
       field<&T::name>("name"),
       field<&T::rating>("rating"),
       field<&T::sentence>("sentence"),
-      field<&T::spoils>("spoils"),
+      list_of<&T::findings>("findings", finding_fields(), {.meaning = "the worst first"}),
   });
   return rows;
 }
@@ -76,7 +77,6 @@ const Fields<QualityOfChannel>& quality_fields() {
       beside<&T::described>(described_channel_fields()),
       part<&T::digital>("digital", digital_fields()),
       list_of<&T::lines>("lines", line_fields()),
-      field<&T::problems>("problems"),
   });
   return rows;
 }

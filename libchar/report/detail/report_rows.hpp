@@ -4,7 +4,10 @@
 
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/limits.hpp"
+#include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/replay/comparison.hpp"
+#include "libchar/replay/fuse.hpp"
 
 namespace libchar {
 
@@ -12,19 +15,23 @@ struct SummaryOfChannel {
   std::string name;
   Rating rating = Rating::good;
   std::string sentence;
-  std::vector<std::string> spoils;
+  std::vector<Finding> findings;
 };
 
 struct QualityOfChannel {
   DescribedChannel described;
   DigitalFaults digital;
   std::vector<SpectralLine> lines;
-  std::vector<std::string> problems;
 };
 
 const Fields<SummaryOfChannel>& summary_fields();
 const Fields<QualityOfChannel>& quality_fields();
 const Fields<Stretch>& still_fields();
 const Fields<LimitReport>& limit_report_fields();
+
+/// Without head and files.
+const Fields<Comparison>& comparison_fields();
+const Fields<FuseResult>& fuse_fields();
+const Fields<fusion::Entry>& algorithm_entry_fields();
 
 }  // namespace libchar

@@ -9,7 +9,6 @@
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/fleet_figures.hpp"
@@ -36,18 +35,14 @@ std::string recordings_part(const FleetReport& report,
                             const std::vector<std::size_t>& recordings,
                             const std::string& title) {
   if (recordings.empty()) return "";
-  std::string rows =
-      "<div class=\"wide\"><table class=\"many\">\n" + table_head({"Device", "Log", "Why"});
-  for (std::size_t i = 0; i < std::min(kFailedOnPage, recordings.size()); ++i) {
-    const DeviceRecord& r = report.records[recordings[i]];
-    rows += table_row({r.device, r.log, r.problem});
+  Table out("device|log|why");
+  for (const std::size_t r : recordings) {
+    const DeviceRecord& one = report.records[r];
+    out.add({one.device, one.log, one.problem});
   }
-  rows += "</tbody></table></div>\n";
-  if (recordings.size() > kFailedOnPage)
-    rows +=
-        fmt::format("<p class=\"note\">And {} more: the list of devices below shows them.</p>\n",
-                    count_text(recordings.size() - kFailedOnPage));
-  return folded(html_text(title), rows);
+  return folded(
+      html_text(title),
+      html_table(out, {.css = "many", .most = kFailedOnPage, .rest = "the list of devices below"}));
 }
 
 std::string failed_part(const FleetReport& report) {
@@ -60,28 +55,27 @@ std::string failed_part(const FleetReport& report) {
                          plural(lot.awaited.size(), "recording") + " without a result yet");
 }
 
-std::string reason_list(const std::vector<std::string>& reasons) {
+Cell reasons_cell(const std::vector<std::string>& reasons) {
   constexpr std::size_t kMost = 5;
-  std::vector<std::string> shown(
-      reasons.begin(),
-      reasons.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, reasons.size())));
-  if (reasons.size() > kMost) shown.push_back(fmt::format("and {} more", reasons.size() - kMost));
-  return bullet_list(shown, "reasons");
+  Cell out;
+  for (std::size_t i = 0; i < std::min(kMost, reasons.size()); ++i)
+    out.lines.emplace_back(reasons[i]);
+  if (reasons.size() > kMost)
+    out.lines.emplace_back(fmt::format("and {} more", reasons.size() - kMost));
+  return out;
 }
 
 std::string worst_table(const FleetReport& report, std::size_t first, std::size_t end) {
-  std::string out = "<div class=\"wide\"><table class=\"many\">\n" +
-                    table_head({"Device", "Type", "Batch", "Why"});
+  Table out("device|type|batch|why");
   for (std::size_t i = first; i < end; ++i) {
     const WorstDevice& w = report.lot->worst[i];
     const DeviceRecord& r = report.records[w.recording];
-    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                       report_link(r.device, r.report),
-                       html_text(r.type),
-                       html_text(batch_of(*report.lot, w.recording)),
-                       reason_list(w.reasons));
+    out.add({report_cell(r.device, r.report),
+             r.type,
+             batch_of(*report.lot, w.recording),
+             reasons_cell(w.reasons)});
   }
-  return out + "</tbody></table></div>\n";
+  return html_table(out, {.css = "many"});
 }
 
 std::string worst_part(const FleetReport& report) {
@@ -98,20 +92,13 @@ std::string worst_part(const FleetReport& report) {
          "limit.</p>\n</section>\n";
 }
 
-std::string quantities_table(const FleetLot& lot, bool of_kind) {
-  std::string rows;
-  for (const QuantityLot& q : lot.quantities)
-    if (q.of_kind == of_kind) rows += table_row(quantity_cells(q, lot));
-  if (rows.empty()) return "";
-  return "<div class=\"wide\"><table class=\"many\">\n" + table_head(quantity_heads(lot, of_kind)) +
-         rows + "</tbody></table></div>\n";
-}
-
 std::string quantities_part(const FleetLot& lot) {
-  const std::string kinds = quantities_table(lot, true), channels = quantities_table(lot, false);
-  std::string out =
-      "<h2>What the devices have in common</h2>\n" + (kinds.empty() ? channels : kinds);
-  if (!kinds.empty()) out += folded("Channel by channel", channels);
+  constexpr PageTable kLook{.css = "many"};
+  const Table kinds = quantities_table(lot, true), channels = quantities_table(lot, false);
+  const bool has_kinds = !kinds.rows.empty();
+  std::string out = "<h2>What the devices have in common</h2>\n";
+  if (has_kinds || !channels.rows.empty()) out += html_table(has_kinds ? kinds : channels, kLook);
+  if (has_kinds) out += folded("Channel by channel", html_table(channels, kLook));
   return out +
          "<p class=\"note\">Means of coefficients are geometric. Spread: from device to device, "
          "what the uncertainty of each "
@@ -164,8 +151,9 @@ bool has_several_recordings(const FleetLot& lot) {
 }
 
 std::string devices_part(const FleetLot& lot) {
-  std::vector<std::string> heads = {"Device", "Type", "Batch", "What is the matter"};
-  if (has_several_recordings(lot)) heads.insert(heads.begin() + 1, "Recording");
+  Table devices("device|type|batch|what is the matter");
+  if (has_several_recordings(lot))
+    devices.columns.insert(devices.columns.begin() + 1, {"recording"});
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
          "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, "
          "batch\"></label>\n"
@@ -177,9 +165,9 @@ std::string devices_part(const FleetLot& lot) {
          "before</button>"
          "<button type=\"button\" id=\"device-next\">next ›</button>\n<span id=\"device-place\" "
          "class=\"dim\"></span>\n"
-         "</div>\n<div class=\"wide\"><table class=\"devices\" id=\"devices\">\n" +
-         table_head(heads) +
-         "</tbody></table></div>\n<p class=\"note\">Every coefficient of every device stands in "
+         "</div>\n<div id=\"devices\">" +
+         html_table(devices, {.css = "devices"}) +
+         "</div>\n<p class=\"note\">Every coefficient of every device stands in "
          "coefficients.csv and "
          "coefficients.npz beside this page.</p>\n</section>\n";
 }
@@ -227,37 +215,27 @@ Json recordings_json(const FleetReport& report) {
 }
 
 /// Of a lot that is small enough for a table of all its channels.
-std::vector<ChannelRow> all_channels(const FleetReport& report) {
+Table all_channels(const FleetReport& report) {
   constexpr std::size_t kMost = 200;
+  Table out = channels_table("device");
+  out.note = kHeadlineNote;
   const std::vector<std::size_t>& order = report.lot->order;
   std::size_t channels = 0;
   for (const std::size_t r : order) channels += report.records[r].channels.size();
-  if (channels > kMost) return {};
+  if (channels > kMost) return out;
   const std::vector<std::string> names = recording_names(report);
-  std::vector<ChannelRow> out;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const DeviceRecord& record = report.records[order[i]];
-    const std::string which = names[i].empty() ? "" : " (" + names[i] + ")";
-    for (ChannelRow& row : channel_rows(record, record.device + which))
-      out.push_back(std::move(row));
+    add_channels(out, record, record.device + (names[i].empty() ? "" : " (" + names[i] + ")"));
   }
   return out;
 }
 
 std::string channels_part(const FleetReport& report) {
-  const std::vector<ChannelRow> rows = all_channels(report);
-  return rows.empty() ? ""
-                      : "<section class=\"channel\">\n<h2>Channel by channel</h2>\n" +
-                            channels_table("Device", rows) + "</section>\n";
-}
-
-std::string channels_text(const FleetReport& report, std::size_t width) {
-  std::vector<std::vector<std::string>> table = {{"device", "channel", "N", "B", "K", "fit"}};
-  for (const ChannelRow& row : all_channels(report)) {
-    table.push_back({printable(row.recording), printable(row.channel)});
-    for (const std::string& cell : row.cells) table.back().push_back(printable(cell));
-  }
-  return table.size() > 1 ? "\n" + text_table(table, "  ", false, width) : "";
+  const Table channels = all_channels(report);
+  return channels.rows.empty() ? ""
+                               : "<section class=\"channel\">\n<h2>Channel by channel</h2>\n" +
+                                     html_table(channels, {.css = "many"}) + "</section>\n";
 }
 
 std::string curves_part(const FleetReport& report) {
@@ -345,15 +323,9 @@ std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t
   const FleetLot& lot = *report.lot;
   std::string out = printable(lot.verdict) + "\n";
   for (const std::string& note : lot.notes) out += "  " + printable(note) + "\n";
-  out += failed_text(report) + channels_text(report, width);
-  std::vector<std::vector<std::string>> rows = {{}};
-  for (const std::string& head : quantity_heads(lot, false)) rows[0].push_back(ascii_lower(head));
-  for (const QuantityLot& q : lot.quantities) {
-    rows.push_back(quantity_cells(q, lot));
-    rows.back().resize(rows[0].size());
-    for (std::string& cell : rows.back()) cell = printable(cell);
-  }
-  if (rows.size() > 1) out += "\n" + text_table(rows, "  ", true, width);
+  out += failed_text(report);
+  for (const Table& table : {all_channels(report), quantities_table(lot)})
+    if (!table.rows.empty()) out += "\n" + terminal_table(table, {width});
   if (lot.worst.empty()) return out;
   out += "\nthe worst first:\n";
   for (std::size_t i = 0; i < std::min(worst, lot.worst.size()); ++i) {

@@ -11,9 +11,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/process/version.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/term_cells.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
@@ -23,6 +22,7 @@
 #include "libchar/report/detail/html/html_tables.hpp"
 #include "libchar/report/detail/html/limits_pieces.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/tables/coefficients.hpp"
 #include "libchar/report/json/json_report.hpp"
 
 namespace libchar {
@@ -54,70 +54,46 @@ std::string facts(const CharacterizationView& view) {
   return out + "</p>\n";
 }
 
-std::string overview_cell(const ChannelView& view, Term term, std::string_view label) {
-  const ChannelResult& c = *view.result;
-  if (!c.fit) return card_cell(label, "–", "");
-  const Coefficient& k = (*c.fit)[term];
-  if (!k.value && !k.upper95) return card_cell(label, "–", "");
-  const TermCells cells = term_cells(k, term, view.unit);
-  const ShownValue& shown = headline(cells);
-  return card_cell(label,
-                   fmt::format("{} <span class=\"dim\">{}</span>{}{}",
-                               html_text(shown.value),
-                               html_text(shown.unit),
-                               doubted(k.status) ? "<span class=\"dim\"> ?</span>" : "",
-                               interval_span(shown)),
-                   k.value ? "n" : "n limit");
-}
-
 std::string channel_link(const ChannelView& c, std::size_t i) {
   const std::string name = html_text(c.result->channel.name);
   return c.in_detail ? fmt::format("<a href=\"#channel-{}\">{}</a>", i, name)
                      : "<b>" + name + "</b>";
 }
 
-std::string overview_row(const ChannelView& view, std::size_t index, double rate_hz) {
+void add_channel(Table& table, const ChannelView& view, std::size_t index, double rate_hz) {
   const ChannelResult& c = *view.result;
-  std::string out = fmt::format("<tr><th scope=\"row\">{} <span class=\"dim\">{}</span></th>",
-                                channel_link(view, index),
-                                html_text(view.shown_unit));
+  Cell name(c.channel.name);
+  name.unit = view.shown_unit;
+  if (view.in_detail) name.anchor = fmt::format("channel-{}", index);
+  std::vector<Cell> row = {std::move(name)};
   for (const Term term : {Term::white, Term::flicker, Term::walk})
-    out += overview_cell(view,
-                         term,
-                         term_title(term, view.unit) + " " +
-                             std::string(kTermNames[static_cast<std::size_t>(term)].letter));
-  const AllanPoint* lowest = view.allan_minimum;
-  out += card_cell("Allan minimum",
-                   lowest == nullptr ? "–"
-                                     : fmt::format("{} <span class=\"dim\">at {}</span>",
-                                                   html_text(number_text(lowest->deviation, 3)),
-                                                   html_text(duration_text(lowest->tau_s))),
-                   "n");
+    row.push_back(headline_cell(c.fit ? (*c.fit)[term] : Coefficient{}, term, view.unit));
+  Cell& lowest = row.emplace_back("–");
+  if (const AllanPoint* point = view.allan_minimum) {
+    lowest = Cell::number(point->deviation, 3);
+    lowest.unit = "at " + duration_text(point->tau_s);
+  }
   const bool white = c.fit && (*c.fit)[Term::white].value;
-  out += card_cell("Sample sd N·√f",
-                   white ? html_text(value_text((*c.fit)[Term::white], std::sqrt(rate_hz))) : "–",
-                   "n");
-  out += card_cell(
-      "Goodness of fit", c.fit ? html_text(probability_text(c.fit->goodness.p)) : "no fit", "n");
-  return out + card_cell("Verdict", rating_badge(view.judgement.rating), "") + "</tr>\n";
+  row.emplace_back(white ? value_text((*c.fit)[Term::white], std::sqrt(rate_hz)) : "–");
+  row.emplace_back(c.fit ? probability_text(c.fit->goodness.p) : "no fit");
+  const Rating rating = view.judgement.rating;
+  row.push_back(
+      Cell::word(fmt::format("{} {}", rating_sign(rating), rating_word(rating)), tint_of(rating)));
+  table.add(std::move(row));
 }
 
 std::string overview_table(const CharacterizationView& view) {
-  std::string out = "<div class=\"wide\"><table class=\"overview cards\">\n" +
-                    table_head({"Channel",
-                                "N (angle random walk, white noise)",
-                                "B (bias instability)",
-                                "K (random walk)",
-                                "Allan minimum",
-                                "Sample sd N·√f",
-                                "Goodness of fit",
-                                "Verdict"});
+  Table out(
+      "channel|N (angle random walk, white noise)|B (bias instability)|K (random walk)|Allan "
+      "minimum|"
+      "sample sd N·√f|goodness of fit|verdict");
+  out.note =
+      "In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: undetermined, the record "
+      "cannot tell this term from another or contradicts it; or the noise terms do not describe "
+      "the recording.";
   for (std::size_t i = 0; i < view.channels.size(); ++i)
-    out += overview_row(view.channels[i], i, view.result->log.time.rate_hz);
-  return out +
-         "</tbody></table></div>\n<p class=\"note\">In brackets: 95 % intervals. ≤: not detected, "
-         "upper 95 % limit. ?: undetermined, the record cannot tell this term from another or "
-         "contradicts it; or the noise terms do not describe the recording.</p>\n";
+    add_channel(out, view.channels[i], i, view.result->log.time.rate_hz);
+  return html_table(out, {.css = "overview cards", .cards = true});
 }
 
 // The sensor first: a sentence a channel, with its colour.
@@ -197,40 +173,33 @@ std::string overview(const CharacterizationView& view) {
 
 std::string time_base(const LogInfo& log) {
   const TimeBase& t = log.time;
-  std::string out = "<h3>Time base</h3>\n<table class=\"facts\"><tbody>\n";
-  out += table_row({"Rate", t.rate_hz > 0 ? brief_text(t.rate_hz, 9) + " Hz" : "unknown"});
-  out += table_row({"Where from",
-                    t.from_stamps ? "stamps in " + t.column + " (" + t.unit +
-                                        (t.unit_guessed ? ", guessed)" : ")")
-                                  : "stated by the user or the file"});
+  Table out("|");
+  out.title = "Time base";
+  out.add({"Rate", t.rate_hz > 0 ? brief_text(t.rate_hz, 9) + " Hz" : "unknown"});
+  out.add({"Where from",
+           t.from_stamps
+               ? "stamps in " + t.column + " (" + t.unit + (t.unit_guessed ? ", guessed)" : ")")
+               : "stated by the user or the file"});
   if (t.from_stamps) {
-    out += table_row(
-        {"Jitter",
-         duration_text(t.jitter_s) + " (robust standard deviation of stamp against grid)"});
-    out += table_row({"Largest deviation", duration_text(t.max_deviation_s)});
+    out.add({"Jitter",
+             duration_text(t.jitter_s) + " (robust standard deviation of stamp against grid)"});
+    out.add({"Largest deviation", duration_text(t.max_deviation_s)});
   }
-  out += table_row({"Gaps",
-                    t.gaps == 0 ? "none"
-                                : fmt::format("{}, {} {}",
-                                              count_text(t.gaps),
-                                              count_text(t.missing_samples),
-                                              t.missing_samples == 1 ? "sample" : "samples")});
-  return out + "</tbody></table>\n";
+  out.add({"Gaps",
+           t.gaps == 0 ? "none" : count_text(t.gaps) + ", " + plural(t.missing_samples, "sample")});
+  return html_table(out, {.css = "facts"});
 }
 
 std::string provenance(const Characterization& result) {
   const LogInfo& log = result.log;
+  Table input("|");
+  input.title = "Input";
+  add_input_file(input, log);
+  add_program(input, result.command);
   std::string out =
       "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div "
-      "class=\"two-columns\">\n<div>\n<h3>Input</h3>\n<table class=\"facts\"><tbody>\n";
-  out += table_row({"File", log.file});
-  out += table_row({"Format", log.format});
-  out += table_row({"Size", count_text(log.bytes) + " bytes, " + count_text(log.rows) + " rows"});
-  out += "<tr><th scope=\"row\">SHA-256</th><td class=\"hash\">" +
-         html_text(log.sha256.empty() ? "not computed" : log.sha256) + "</td></tr>\n";
-  out += table_row({"Tool", "sensorchar " + std::string(version())});
-  out += "<tr><th scope=\"row\">Command</th><td><code>" + html_text(command_line(result.command)) +
-         "</code></td></tr>\n</tbody></table>\n";
+      "class=\"two-columns\">\n<div>\n" +
+      html_table(input, {.css = "facts"});
   if (!log.dialect.empty())
     out += "<h4>How the file was understood</h4>\n" + bullet_list(log.dialect, "plain");
   if (!log.guesses.empty())

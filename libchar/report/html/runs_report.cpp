@@ -15,6 +15,7 @@
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/charts.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_page.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
@@ -22,7 +23,6 @@
 #include "libchar/report/detail/html/many_pieces.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/report_rows.hpp"
-#include "libchar/report/detail/svg/svg_curves.hpp"
 #include "libchar/report/text/fit_text.hpp"
 #include "libchar/report/text/limits_text.hpp"
 
@@ -30,13 +30,13 @@ namespace libchar {
 namespace {
 
 /// The channels of each run by itself.
-std::vector<ChannelRow> single_rows(const RunsReport& report) {
-  std::vector<ChannelRow> out;
+Table single_runs(const RunsReport& report) {
+  Table out = channels_table("run");
+  out.note = kHeadlineNote;
   for (std::size_t r = 0; r < report.runs.size(); ++r) {
     DeviceRecord record = record_of(report.runs[r]);
     record.report = report.folders[r];
-    for (ChannelRow& row : channel_rows(record, report.pooled->runs[r].file))
-      out.push_back(std::move(row));
+    add_channels(out, record, report.pooled->runs[r].file);
   }
   return out;
 }
@@ -102,67 +102,58 @@ const AllanCurve& longest_curve(const RunsReport& report, const PooledChannel& c
 }
 
 std::string curves_of(const RunsReport& report, const PooledChannel& c) {
-  std::vector<SvgCurve> curves;
-  for (const ChannelRun& run : c.runs) {
-    const AllanCurve& allan = channel_in(report, c, run.run).allan;
-    SvgCurve curve = allan_svg(allan);
-    curve.name = run.differs ? report.pooled->runs[run.run].file + " (differs)"
-                             : report.pooled->runs[run.run].file;
-    curve.colour = run.run;
-    curve.strong = run.differs;
-    curves.push_back(std::move(curve));
-  }
-  SvgCurve model;
-  model.name = "the pooled model";
-  model.model = true;
   const AllanCurve& longest = longest_curve(report, c);
+  FigureSeries model;
+  model.name = model.tip = "the pooled model";
+  model.look = {.ink = Ink::black, .dash = 1, .width = 2};
   for (const AllanPoint& point : longest.points)
     if (const auto value =
             model_deviation(c.fit, longest.type, static_cast<double>(point.m), longest.dt_s)) {
       model.x.push_back(point.tau_s);
       model.y.push_back(*value);
     }
-  curves.insert(curves.begin(), std::move(model));
+  std::vector<FigureSeries> curves = {std::move(model)};
+  for (const ChannelRun& run : c.runs) {
+    const std::string& name = report.pooled->runs[run.run].file;
+    curves.push_back(allan_series(channel_in(report, c, run.run).allan,
+                                  run.run,
+                                  name + (run.differs ? " (differs)" : ""),
+                                  run.differs));
+  }
   const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
-  return svg_curves(curves,
-                    {"averaging time τ, s",
-                     std::string(name_of(longest.type)) + ", " + unit,
-                     "Allan curves of all runs of " + c.channel.name});
+  return curves_figure(std::move(curves),
+                       std::string(name_of(longest.type)) + ", " + unit,
+                       "Allan curves of all runs of " + c.channel.name);
 }
 
-std::string runs_rows(const RunsReport& report, const PooledChannel& c) {
-  std::string out =
-      "<details><summary>The runs one by one</summary>\n<div class=\"wide\"><table>\n" +
-      table_head({"Run", "Mean", "moved by noise", "2 ln L", "p", ""});
+Table runs_table(const RunsReport& report, const PooledChannel& c) {
+  Table out("run|mean|moved by noise|2 ln L|p|");
   for (const ChannelRun& run : c.runs)
-    out += fmt::format(
-        "<tr><th "
-        "scope=\"row\">{}</th><td>{}</td><td>±{}</td><td>{}</td><td>{}</td><td{}</td></tr>\n",
-        html_text(report.pooled->runs[run.run].file),
-        html_text(number_text(run.mean)),
-        html_text(number_text(run.mean_sd, 2)),
-        html_text(number_text(run.ratio, 3)),
-        html_text(probability_text(run.p, c.simulations)),
-        run.differs ? " class=\"out\">differs" : ">");
-  return out + "</tbody></table></div>\n</details>\n";
+    out.add({report.pooled->runs[run.run].file,
+             number_text(run.mean),
+             "±" + number_text(run.mean_sd, 2),
+             number_text(run.ratio, 3),
+             probability_text(run.p, c.simulations),
+             run.differs ? Cell::word("differs", Tint::bad) : Cell()});
+  return out;
 }
 
 std::string channel_part(const RunsReport& report, const PooledChannel& c) {
-  std::string out = "<section class=\"channel\">\n<h2>" + html_text(c.channel.name) +
-                    " <span class=\"unit\">" + html_text(c.channel.unit) + "</span></h2>\n" +
-                    bullet_list(c.sentences, "plain");
-  std::vector<std::string> heads = coefficient_heads();
-  out += "<div class=\"wide\"><table class=\"many\">\n" + table_head(heads) + "<tr>";
-  for (const std::string& cell : coefficient_cells(c.channel, c.fit))
-    out += "<td class=\"n\">" + html_text(cell) + "</td>";
-  out += "</tr></tbody></table></div>\n" + bullet_list(c.fit.sentences, "cautions");
-  return out + curves_of(report, c) + runs_rows(report, c) + "</section>\n";
+  Table pooled(kHeadlines);
+  pooled.add(headline_cells(c.channel, c.fit));
+  return "<section class=\"channel\">\n<h2>" + html_text(c.channel.name) +
+         " <span class=\"unit\">" + html_text(c.channel.unit) + "</span></h2>\n" +
+         bullet_list(c.sentences, "plain") + html_table(pooled, {.css = "many"}) +
+         findings_list(c.fit.findings) + curves_of(report, c) +
+         folded("The runs one by one", html_table(runs_table(report, c))) + "</section>\n";
 }
 
 SensorModel model_of(const RunsReport& report, const PooledChannel& c) {
   const ChannelResult& first = channel_in(report, c, c.runs[0].run);
-  SensorModel model = sensor_model_from(
-      c.channel, report.runs[c.runs[0].run].log, first.quality, c.fit, first.allan);
+  ChannelResult pooled = first;
+  pooled.channel = c.channel;
+  pooled.fit = c.fit;
+  SensorModel model = sensor_model_from(pooled, report.runs[c.runs[0].run].log);
   model.obtained = fmt::format("fit of {} recordings together", c.runs.size());
   // One hash is that of one file.
   model.recording_file =
@@ -203,7 +194,7 @@ std::string runs_html(const RunsReport& report) {
   if (report.limits != nullptr) body += limits_section(*report.limits);
   for (const PooledChannel& c : report.pooled->channels) body += channel_part(report, c);
   body += "<section class=\"channel\">\n<h2>Each run by itself</h2>\n" +
-          channels_table("Run", single_rows(report)) + "</section>\n" +
+          html_table(single_runs(report), {.css = "many"}) + "</section>\n" +
           many_provenance(report.runs, report.command);
   return html_page({"Runs of a sensor",
                     fmt::format("{} runs", report.runs.size()),
@@ -216,12 +207,12 @@ std::string runs_html(const RunsReport& report) {
 std::string runs_text(const RunsReport& report, const TextLook& look) {
   std::string out = printable(report.pooled->verdict) + "\n";
   for (const PooledChannel& c : report.pooled->channels) {
-    out += "\n" + fit_text(c.channel, c.fit, look);
+    out += "\n" + fit_text(c.channel, c.fit, look) + findings_text(c.fit.findings, 5, look.colours);
     for (const std::string& sentence : c.sentences) out += "  " + printable(sentence) + "\n";
   }
   for (const std::string& problem : report.pooled->problems)
     out += "\n" + printable(problem) + "\n";
-  if (report.limits != nullptr) out += limits_text(*report.limits, look.colours);
+  if (report.limits != nullptr) out += limits_text(*report.limits, look);
   return out;
 }
 

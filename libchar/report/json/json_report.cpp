@@ -31,7 +31,7 @@ DerivedNumbers derived_of(const ChannelView& view) {
 }
 
 QualityOfChannel quality_of(const ChannelResult& c) {
-  return {{c.channel, c.quality}, c.digital, c.lines, c.problems};
+  return {{c.channel, c.quality}, c.digital, c.lines};
 }
 
 // Enough digits for a picture.
@@ -60,10 +60,7 @@ TraceOfChannel trace_of(const ChannelView& view) {
 }
 
 SummaryOfChannel summary_of(const ChannelView& view) {
-  SummaryOfChannel out{view.result->channel.name, view.judgement.rating, view.summary, {}};
-  for (const Objection& objection : view.judgement.objections)
-    out.spoils.push_back(objection.phrase);
-  return out;
+  return {view.result->channel.name, view.judgement.rating, view.summary, view.judgement.findings};
 }
 
 Json verification_json(const ChannelView& view) {
@@ -77,7 +74,7 @@ Json verification_json(const ChannelView& view) {
        spectrum_of_channel(c.channel, c.verification->spectrum, view.verification_ci95)});
 }
 
-// A channel that could not be fitted keeps its place: null, with the objection in "problems".
+// A channel that could not be fitted keeps its place: null, its findings say why.
 Json fit_or_reason(const ChannelView& view) {
   const ChannelResult& channel = *view.result;
   const std::string name = json_text(channel.channel.name), unit = json_text(channel.channel.unit);

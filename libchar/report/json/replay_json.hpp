@@ -2,9 +2,12 @@
 // report.json of a replay; the keys of docs/json.md, which may grow and never change.
 
 #include "libchar/core/document/json.hpp"
-#include "libchar/replay/view/replay_view.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
+
+/// What report.json says, as `read_replay_report` reads it back; its head is left empty.
+ReplayReport replay_report(const ReplayView& view);
 
 /// {"format":"replay-report","version":1,…}. What a clock or the heap measured stands at
 /// "ns_per_sample", "learning_s" and "peak_bytes" of each algorithm and under "measured".
@@ -18,10 +21,5 @@ Json algorithms_json();
 /// What a clock or the heap measured, and what follows from it.
 inline constexpr const char* kMeasuredKeys[] = {
     "measured", "verdict_with_costs", "ns_per_sample", "learning_s", "peak_bytes", "on_front"};
-
-/// The same without those keys, the fronts and the verdict that follow from them, and the command:
-/// the same bytes for the same scene and options.
-Json replay_json_without_times(const ReplayView& view);
-Json replay_json_without_times(const ReplayResult& result);
 
 }  // namespace libchar

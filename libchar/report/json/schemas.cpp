@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/characterize/curves/curve_document.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -9,6 +10,7 @@
 #include "libchar/model/model_fields.hpp"
 #include "libchar/model/noise_limits.hpp"
 #include "libchar/replay/fusion_file.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 #include "libchar/report/detail/report_rows.hpp"
 #include "libchar/scene/text/scene_writer.hpp"
 
@@ -50,12 +52,21 @@ Json of_format(const char* name, Json properties) {
   return out;
 }
 
+// Format and version, and what the rows of the document say.
+Json of_format(const char* name, std::span<const Field> rows) {
+  Json out = of_format(name, Json::object());
+  const Json part = schema_of(rows);
+  for (const Json& key : part.value("required", Json::array())) out["required"].push_back(key);
+  out["properties"].update(part["properties"]);
+  return out;
+}
+
 Json list_of_schema(Json items) {
   return {{"type", "array"}, {"items", std::move(items)}};
 }
 
 Json head_schema() {
-  Json out = schema_of(document_head_rows());
+  Json out = schema_of(document_head_fields().rows);
   out["properties"]["measured"] = {
       {"type", "object"},
       {"description", "what differs between two runs of one command, and counts of what was done"}};
@@ -80,6 +91,13 @@ Json channels_schema(std::span<const Field> rows, Json keys = Json::object()) {
   return out;
 }
 
+// Names and digests of the files that stand beside a report.
+void add_files(Json& properties) {
+  const Json text = {{"type", "string"}};
+  properties["files"] = list_of_schema(text);
+  properties["files_sha256"] = {{"type", "object"}, {"additionalProperties", text}};
+}
+
 Json characterization_schema() {
   const Json text = {{"type", "string"}};
   Json out = of_format(
@@ -99,8 +117,36 @@ Json characterization_schema() {
   more["verification"] = channels_schema(verification_fields().rows);
   more["verification"]["properties"]["channels"]["items"]["type"] = {"object", "null"};
   more["limits"] = schema_of(limit_report_fields().rows);
-  more["files"] = list_of_schema(text);
-  more["files_sha256"] = {{"type", "object"}, {"additionalProperties", text}};
+  add_files(more);
+  return out;
+}
+
+Json replay_schema() {
+  Json out = of_format("replay-report", ReplayReport::fields().rows);
+  out["properties"]["config"] = {{"type", "object"},
+                                 {"description", "options of the program and the library"}};
+  add_files(out["properties"]);
+  for (const char* key : {"config", "files", "files_sha256"}) out["required"].push_back(key);
+  return out;
+}
+
+Json comparison_schema() {
+  Json out = of_format("replay-comparison", comparison_fields().rows);
+  out["properties"]["failed"] = list_of_schema({{"type", "string"}});
+  out["required"].push_back("failed");
+  return out;
+}
+
+Json fuse_schema() {
+  Json out = of_format("fuse", fuse_fields().rows);
+  out["properties"]["output"] = list_of_schema({{"type", "string"}});
+  out["required"].push_back("output");
+  return out;
+}
+
+Json bench_schema() {
+  Json out = schema_of(bench_fields().rows);
+  add_files(out["properties"]);
   return out;
 }
 
@@ -153,6 +199,16 @@ Json schemas() {
                           {"channels", list_of_schema(fit_channel_schema())}}));
   add_document(
       all, "characterization", "report.json of a characterization", characterization_schema());
+  add_document(all, "replay-report", "report.json of a replay", replay_schema());
+  add_document(all, "replay-comparison", "Two replays side by side", comparison_schema());
+  add_document(all, "fuse", "A log fused", fuse_schema());
+  add_document(
+      all,
+      "fusion-algorithms",
+      "Fusion algorithms with what they need",
+      of_format("fusion-algorithms",
+                {{"algorithms", list_of_schema(schema_of(algorithm_entry_fields().rows))}}));
+  add_file(all, "bench", "bench.json of benchmarks", bench_schema());
   add_file(
       all, "sensor-model", "A sensor model: CHANNEL.sensor.yaml (docs/models.md)", model_schema());
   add_document(

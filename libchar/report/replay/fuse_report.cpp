@@ -4,10 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/not_known.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/report_rows.hpp"
 
 namespace libchar {
 namespace {
@@ -20,25 +23,30 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
   return percent_text(share(part, whole), 3);
 }
 
-Json faults_json(const FuseResult& result) {
-  Json out = Json::array();
-  for (const FoundFault& fault : result.faults)
-    out.push_back({{"sensor", printable(result.sensors[fault.sensor].name)},
-                   {"kind", fault.kind},
-                   {"from_s", fault.from_s},
-                   {"to_s", fault.to_s ? Json(*fault.to_s) : Json(nullptr)}});
+struct ReportedUse {
+  std::string name, channel, unit;
+  double missing = 0, out = 0;
+};
+
+std::vector<ReportedUse> uses_of(const FuseResult& result) {
+  std::vector<ReportedUse> out;
+  for (const FusedSensor& sensor : result.sensors)
+    out.push_back({sensor.name,
+                   sensor.channel,
+                   sensor.unit,
+                   share(sensor.missing, result.instants),
+                   share(sensor.out, result.instants)});
   return out;
 }
 
-Json sensors_json(const FuseResult& result) {
-  Json out = Json::array();
-  for (const FusedSensor& sensor : result.sensors)
-    out.push_back(
-        {{"name", printable(sensor.name)},
-         {"channel", sensor.channel.empty() ? Json(nullptr) : Json(printable(sensor.channel))},
-         {"unit", printable(sensor.unit)},
-         {"missing", share(sensor.missing, result.instants)},
-         {"out", share(sensor.out, result.instants)}});
+std::vector<ReplayReport::Fault> faults_of(const FuseResult& result) {
+  std::vector<ReplayReport::Fault> out;
+  for (const FoundFault& fault : result.faults)
+    out.push_back({result.sensors[fault.sensor].name,
+                   fault.kind,
+                   kNone,
+                   fault.from_s,
+                   fault.to_s.value_or(kNone)});
   return out;
 }
 
@@ -68,26 +76,44 @@ std::string fuse_text(const FuseResult& result, const std::vector<std::string>& 
   return out + "\n";
 }
 
+const Fields<FuseResult>& fuse_fields() {
+  using T = FuseResult;
+  using U = ReportedUse;
+  static const Fields<T> with = always(Fields<T>{
+      field<&T::file>("path"),
+      field<&T::file_sha256>("sha256"),
+  });
+  static const Fields<LearntInput> inputs = always(Fields<LearntInput>{
+      field<&LearntInput::name>("name"),
+      field<&LearntInput::unit>("unit"),
+  });
+  static const Fields<U> sensors = always(Fields<U>{
+      field<&U::name>("name"),
+      field_or_null<&U::channel>("channel"),
+      field<&U::unit>("unit"),
+      field<&U::missing>("missing", {.meaning = "share of the instants without a sample"}),
+      field<&U::out>("out", {.meaning = "share at which the algorithm had it out"}),
+  });
+  static const Fields<T> rows = always(Fields<T>{
+      level<T>("with", with),
+      field<&T::algorithm, &LearntAlgorithm::label>("algorithm"),
+      field<&T::rate_hz>("rate_hz"),
+      field<&T::instants>("rows"),
+      computed<[](const T& r) { return share(r.estimates, r.instants); }>("estimated"),
+      computed<[](const T& r) { return share(r.deviations, r.instants); }>("with_deviation"),
+      list_of<&T::inputs>("inputs", inputs),
+      computed_list<uses_of>("sensors", sensors),
+      computed_list<faults_of>("faults", ReplayReport::Fault::found_fields()),
+  });
+  return rows;
+}
+
 Json fuse_json(const FuseResult& result,
                const std::vector<std::string>& command,
                const std::vector<std::string>& files) {
-  Json inputs = Json::array();
-  for (const LearntInput& input : result.inputs)
-    inputs.push_back({{"name", printable(input.name)}, {"unit", printable(input.unit)}});
-  Json written = Json::array();
-  for (const std::string& file : files) written.push_back(printable(file));
-  Json out = document_head("fuse", command, {&result.log});
-  for (const Json& warning : warnings_json(result.warnings)) out["warnings"].push_back(warning);
-  out["with"] = {{"path", printable(result.file)}, {"sha256", result.file_sha256}};
-  out["algorithm"] = printable(result.algorithm.label);
-  out["rate_hz"] = result.rate_hz;
-  out["rows"] = result.instants;
-  out["estimated"] = share(result.estimates, result.instants);
-  out["with_deviation"] = share(result.deviations, result.instants);
-  out["inputs"] = inputs;
-  out["sensors"] = sensors_json(result);
-  out["faults"] = faults_json(result);
-  out["output"] = written;
+  Json out = document_head("fuse", command, {&result.log}, result.warnings);
+  out.update(document_of(fuse_fields(), result));
+  out["output"] = texts_json(files);
   return out;
 }
 

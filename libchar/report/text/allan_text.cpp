@@ -1,13 +1,11 @@
 #include "libchar/report/text/allan_text.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/curves/curve_document.hpp"
+#include "libchar/core/not_known.hpp"
 #include "libchar/core/text/csv_cell.hpp"
-#include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
 
@@ -16,19 +14,18 @@ std::string allan_csv(const std::vector<Channel>& channels, const std::vector<Al
   for (std::size_t c = 0; c < std::min(channels.size(), curves.size()); ++c)
     for (const AllanPoint& p : curves[c].points) {
       const bool stated = !deviation_row(curves[c].type).without_interval();
-      const auto or_empty = [&](double value) { return stated ? shortest(value) : ""; };
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n",
-                          csv_cell(channels[c].name),
-                          csv_cell(deviation_unit(curves[c].type, channels[c].unit)),
-                          shortest(p.tau_s),
-                          shortest(p.deviation),
-                          or_empty(p.ci68.low),
-                          or_empty(p.ci68.high),
-                          or_empty(p.ci95.low),
-                          or_empty(p.ci95.high),
-                          or_empty(p.edf),
-                          p.terms,
-                          name_of(curves[c].type));
+      const auto known = [&](double value) { return stated ? value : kNone; };
+      text += csv_line(channels[c].name,
+                       deviation_unit(curves[c].type, channels[c].unit),
+                       p.tau_s,
+                       p.deviation,
+                       known(p.ci68.low),
+                       known(p.ci68.high),
+                       known(p.ci95.low),
+                       known(p.ci95.high),
+                       known(p.edf),
+                       p.terms,
+                       name_of(curves[c].type));
     }
   return text;
 }

@@ -39,10 +39,9 @@ std::string characterization_text(const CharacterizationView& view, const TextLo
     if (c.verification)
       for (const std::string& sentence : c.verification->sentences)
         text += fmt::format("  {}\n", printable(sentence));
-    if (!c.fit) continue;  // then the sentence is made of them
-    for (const std::string& problem : c.problems) text += fmt::format("  {}\n", printable(problem));
+    text += findings_text(channel.judgement.findings, 5, look.colours);
   }
-  if (result.limits) text += limits_text(*result.limits, look.colours);
+  if (result.limits) text += limits_text(*result.limits, look);
   return text;
 }
 

@@ -1,12 +1,8 @@
 #include "libchar/report/text/devices_text.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/text/csv_cell.hpp"
-#include "libchar/core/text/decimal.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {
@@ -32,15 +28,14 @@ std::string hat_csv(const LogHat& hat) {
   std::string text = "channel,unit,tau_s,deviation,variance,variance_sd,status,terms\n";
   for (std::size_t c = 0; c < hat.channels.size(); ++c)
     for (const HatPoint& p : hat.hat.devices[c])
-      text += fmt::format("{},{},{},{},{},{},{},{}\n",
-                          csv_cell(hat.channels[c].name),
-                          csv_cell(hat.channels[c].unit),
-                          shortest(p.tau_s),
-                          std::isnan(p.deviation) ? "" : shortest(p.deviation),
-                          shortest(p.variance),
-                          shortest(p.variance_sd),
-                          name_of(p.status),
-                          p.terms);
+      text += csv_line(hat.channels[c].name,
+                       hat.channels[c].unit,
+                       p.tau_s,
+                       p.deviation,
+                       p.variance,
+                       p.variance_sd,
+                       name_of(p.status),
+                       p.terms);
   return text;
 }
 
@@ -73,15 +68,14 @@ std::string dynamic_csv(const LogDynamic& dynamic) {
   for (std::size_t c = 0; c < dynamic.channels.size(); ++c)
     for (const DynamicWindow& window : dynamic.deviations[c].windows)
       for (const AllanPoint& p : window.curve.points)
-        text += fmt::format("{},{},{},{},{},{},{},{}\n",
-                            csv_cell(dynamic.channels[c].name),
-                            csv_cell(dynamic.channels[c].unit),
-                            shortest(middle_s(window)),
-                            shortest(window.from_s),
-                            shortest(window.to_s),
-                            shortest(p.tau_s),
-                            shortest(p.deviation),
-                            p.terms);
+        text += csv_line(dynamic.channels[c].name,
+                         dynamic.channels[c].unit,
+                         middle_s(window),
+                         window.from_s,
+                         window.to_s,
+                         p.tau_s,
+                         p.deviation,
+                         p.terms);
   return text;
 }
 

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/table/table.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
@@ -22,7 +21,7 @@ std::string beside_noise(double value, double noise) {
       value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
 }
 
-std::vector<std::string> channel_row(const Channel& channel, const ChannelQuality& q) {
+std::vector<Cell> channel_row(const Channel& channel, const ChannelQuality& q) {
   const double noise = q.standard_deviation;
   const bool constant = q.samples > 1 && q.minimum == q.maximum;
   return {printable(channel.name, 40),
@@ -38,23 +37,15 @@ std::vector<std::string> channel_row(const Channel& channel, const ChannelQualit
           beside_noise(q.maximum, noise),
           q.resolution ? brief_text(*q.resolution, 4) : "-",
           std::to_string(q.saturated),
-          q.samples < 3 || constant ? "-" : brief_text(q.difference_kurtosis, 3)};
+          Cell::shown(q.samples < 3 || constant ? "-" : brief_text(q.difference_kurtosis, 3),
+                      q.difference_kurtosis)};
 }
 
-std::string channel_table(const Inspection& inspection, std::size_t width) {
-  std::vector<std::vector<std::string>> rows = {{"channel",
-                                                 "unit",
-                                                 "missing",
-                                                 "mean",
-                                                 "sd",
-                                                 "min",
-                                                 "max",
-                                                 "LSB",
-                                                 "saturated",
-                                                 "kurtosis of differences"}};
+Table channel_table(const Inspection& inspection) {
+  Table out("channel|unit|missing|mean|sd|min|max|LSB|saturated|kurtosis of differences");
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
-    rows.push_back(channel_row(inspection.info.channels[c], inspection.quality[c]));
-  return text_table(rows, "  ", false, width);
+    out.add(channel_row(inspection.info.channels[c], inspection.quality[c]));
+  return out;
 }
 
 // "angular_velocity.x, … and 34 more": enough to see what a topic is about.
@@ -69,7 +60,7 @@ std::string some_fields(const LogTopic& topic) {
   return text;
 }
 
-std::vector<std::string> topic_row(const LogTopic& topic) {
+std::vector<Cell> topic_row(const LogTopic& topic) {
   return {printable(topic.name, 60),
           topic.type.empty() ? "-" : printable(topic.type, 40),
           std::to_string(topic.rows),
@@ -78,80 +69,42 @@ std::vector<std::string> topic_row(const LogTopic& topic) {
 }
 
 // What sensors write first, what cannot be read last.
-std::string topic_table(const LogInfo& info, std::size_t width) {
+Table topic_table(const LogInfo& info) {
   const auto rank = [](const LogTopic& topic) {
     return !topic.why_not.empty() ? 2 : topic.sensor ? 0 : 1;
   };
-  std::vector<std::vector<std::string>> rows = {{"topic", "type", "rows", "rate", "fields"}};
+  Table out("topic|type|rows|rate|fields");
   for (const int wanted : {0, 1, 2})
     for (const LogTopic& topic : info.topics)
-      if (rank(topic) == wanted) rows.push_back(topic_row(topic));
-  return text_table(rows, "  ", true, width);
-}
-
-// A remark as words and the numbers between them.
-struct RemarkParts {
-  std::vector<std::string> words, numbers;
-};
-
-RemarkParts parts_of(const std::string& remark) {
-  RemarkParts out{{""}, {}};
-  for (std::size_t i = 0; i < remark.size();) {
-    std::size_t end = i;
-    while (end < remark.size() &&
-           std::string_view("0123456789.+-e").find(remark[end]) != std::string_view::npos)
-      ++end;
-    std::string number = remark.substr(i, end - i);
-    while (!number.empty() && !parse_double(number)) number.pop_back();
-    if (number.empty()) {
-      out.words.back() += remark[i++];
-      continue;
-    }
-    out.numbers.push_back(number);
-    out.words.emplace_back();
-    i += number.size();
-  }
+      if (rank(topic) == wanted) out.add(topic_row(topic));
   return out;
 }
 
-// The same remark on several channels, its numbers as ranges.
-struct RemarkGroup {
-  std::vector<std::string> channels;
-  std::vector<std::string> words, least, most;
-
-  void add(const std::string& channel, const RemarkParts& parts) {
-    channels.push_back(channel);
-    for (std::size_t k = 0; k < parts.numbers.size(); ++k) {
-      const double value = *parse_double(parts.numbers[k]);
-      if (value < *parse_double(least[k])) least[k] = parts.numbers[k];
-      if (value > *parse_double(most[k])) most[k] = parts.numbers[k];
-    }
-  }
-  std::string line() const {
-    std::string text = "  " + first_names(channels) + ": " + words[0];
-    for (std::size_t k = 0; k < least.size(); ++k)
-      text += (least[k] == most[k] ? least[k] : least[k] + "…" + most[k]) + words[k + 1];
-    return text + "\n";
-  }
-};
-
-// One line a kind of remark, not one a channel.
+// One line for each kind of finding, not one for each channel: what the first says, and who is alike.
 std::string remarks(const Inspection& inspection) {
-  std::vector<RemarkGroup> groups;
+  struct Alike {
+    const Finding* first;
+    std::vector<std::string> channels;
+    bool same = true;
+  };
+  std::vector<Alike> kinds;
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
-    for (const std::string& suggestion : inspection.quality[c].suggestions) {
-      const RemarkParts parts = parts_of(printable(suggestion));
-      const auto known = std::find_if(groups.begin(), groups.end(), [&](const RemarkGroup& group) {
-        return group.words == parts.words;
-      });
-      RemarkGroup& group =
-          known != groups.end()
-              ? *known
-              : groups.emplace_back(RemarkGroup{{}, parts.words, parts.numbers, parts.numbers});
-      group.add(printable(inspection.info.channels[c].name, 40), parts);
+    for (const Finding& one : inspection.quality[c].findings) {
+      auto kind = std::find_if(
+          kinds.begin(), kinds.end(), [&](const Alike& k) { return k.first->code == one.code; });
+      if (kind == kinds.end()) kind = kinds.insert(kinds.end(), {&one, {}});
+      kind->same = kind->same && kind->first->sentence == one.sentence;
+      kind->channels.push_back(printable(inspection.info.channels[c].name, 40));
     }
   std::string text;
-  for (const RemarkGroup& group : groups) text += group.line();
+  for (const Alike& kind : kinds) {
+    const std::vector<std::string> others(kind.channels.begin() + 1, kind.channels.end());
+    const std::string who = kind.same ? first_names(kind.channels) : kind.channels[0];
+    text += "  " + who + ": " + printable(kind.first->sentence);
+    if (!kind.same) text += " (alike: " + first_names(others) + ")";
+    for (const Finding::Help& help : kind.first->help) text += "; " + printable(help.sentence);
+    text += "\n";
+  }
   return text;
 }
 
@@ -167,7 +120,7 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
   for (const std::string& guess : info.guesses) text += "  guessed: " + printable(guess) + "\n";
   for (const Warning& warning : info.warnings.list())
     text += "  warning: " + sentence_of(warning) + "\n";
-  text += is_listing(info) ? topic_table(info, width) : channel_table(inspection, width);
+  text += terminal_table(is_listing(info) ? topic_table(info) : channel_table(inspection), {width});
   return text + remarks(inspection);
 }
 

@@ -7,7 +7,6 @@
 
 #include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/core/text/csv_cell.hpp"
-#include "libchar/core/text/decimal.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {
@@ -35,17 +34,16 @@ std::string cross_csv(const LogCrossSpectrum& cross) {
       head(cross.first.name, spectrum_unit(Scaling::psd, cross.first.unit)),
       head(cross.second.name, spectrum_unit(Scaling::psd, cross.second.unit)));
   for (std::size_t k = 0; k < c.density.size(); ++k)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
-                        shortest(c.frequency_hz[k]),
-                        shortest(c.density[k].real()),
-                        shortest(c.density[k].imag()),
-                        shortest(std::abs(c.density[k])),
-                        shortest(std::arg(c.density[k])),
-                        shortest(c.phase_sd_rad[k]),
-                        shortest(c.first[k]),
-                        shortest(c.second[k]),
-                        shortest(c.coherence[k]),
-                        shortest(c.coherence_unbiased[k]));
+    text += csv_line(c.frequency_hz[k],
+                     c.density[k].real(),
+                     c.density[k].imag(),
+                     std::abs(c.density[k]),
+                     std::arg(c.density[k]),
+                     c.phase_sd_rad[k],
+                     c.first[k],
+                     c.second[k],
+                     c.coherence[k],
+                     c.coherence_unbiased[k]);
   return text;
 }
 
@@ -53,11 +51,10 @@ std::string coherence_csv(const LogCrossSpectrum& cross) {
   const CrossSpectrum& c = cross.cross;
   std::string text = "frequency_hz,coherence,coherence_unbiased,significant\n";
   for (std::size_t k = 0; k < c.coherence.size(); ++k)
-    text += fmt::format("{},{},{},{}\n",
-                        shortest(c.frequency_hz[k]),
-                        shortest(c.coherence[k]),
-                        shortest(c.coherence_unbiased[k]),
-                        c.coherence[k] > c.significant_coherence ? 1 : 0);
+    text += csv_line(c.frequency_hz[k],
+                     c.coherence[k],
+                     c.coherence_unbiased[k],
+                     c.coherence[k] > c.significant_coherence ? 1 : 0);
   return text;
 }
 
@@ -105,15 +102,11 @@ std::string spectrograms_csv(const LogSpectrograms& spectrograms) {
   std::string text = "channel,unit,time_s,frequency_hz,value\n";
   for (std::size_t c = 0; c < spectrograms.channels.size(); ++c) {
     const Spectrogram& s = spectrograms.spectrograms[c];
-    const std::string head =
-        fmt::format("{},{},",
-                    csv_cell(spectrograms.channels[c].name),
-                    csv_cell(spectrum_unit(s.scaling, spectrograms.channels[c].unit)));
-    for (std::size_t i = 0; i < s.time_s.size(); ++i) {
-      const std::string time = head + shortest(s.time_s[i]) + ",";
+    const std::string unit = spectrum_unit(s.scaling, spectrograms.channels[c].unit);
+    for (std::size_t i = 0; i < s.time_s.size(); ++i)
       for (std::size_t k = 0; k < s.value[i].size(); ++k)
-        text += time + shortest(s.frequency_hz[k]) + "," + shortest(s.value[i][k]) + "\n";
-    }
+        text += csv_line(
+            spectrograms.channels[c].name, unit, s.time_s[i], s.frequency_hz[k], s.value[i][k]);
   }
   return text;
 }

@@ -6,7 +6,6 @@
 
 #include "libchar/characterize/curves/curve_document.hpp"
 #include "libchar/core/text/csv_cell.hpp"
-#include "libchar/core/text/decimal.hpp"
 #include "libchar/spectrum/spectrum_interval.hpp"
 
 namespace libchar {
@@ -18,8 +17,8 @@ std::string spectra_csv(const LogSpectra& spectra) {
   text += "\n";
   const std::vector<double>& frequency = spectra.channels.front().spectrum.frequency_hz;
   for (std::size_t k = 0; k < frequency.size(); ++k) {
-    text += shortest(frequency[k]);
-    for (const ChannelSpectrum& c : spectra.channels) text += "," + shortest(c.spectrum.value[k]);
+    text += csv_cell(frequency[k]);
+    for (const ChannelSpectrum& c : spectra.channels) text += "," + csv_cell(c.spectrum.value[k]);
     text += "\n";
   }
   return text;
@@ -29,13 +28,12 @@ std::string lines_csv(const LogSpectra& spectra) {
   std::string text = "channel,unit,frequency_hz,amplitude,excess,width_hz\n";
   for (const ChannelSpectrum& c : spectra.channels)
     for (const SpectralLine& line : c.lines)
-      text += fmt::format("{},{},{},{},{},{}\n",
-                          csv_cell(c.channel.name),
-                          csv_cell(c.channel.unit),
-                          shortest(line.frequency_hz),
-                          shortest(line.amplitude),
-                          shortest(line.excess),
-                          shortest(line.width_hz));
+      text += csv_line(c.channel.name,
+                       c.channel.unit,
+                       line.frequency_hz,
+                       line.amplitude,
+                       line.excess,
+                       line.width_hz);
   return text;
 }
 

@@ -432,6 +432,7 @@ const Fields<ReadOptions>& scene_reading_fields() {
                                                     "format",
                                                     "from_s",
                                                     "to_s",
+                                                    "missing",
                                                     "overflow_as_missing",
                                                     "skip_repeated_header"},
                                                    Written::when_set);

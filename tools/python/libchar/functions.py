@@ -124,7 +124,7 @@ def _fit(channel: dict[str, Any]) -> NoiseFit:
 def _refuse_nothing(kept: _libchar.Characterized, what: str, found: Sequence[Any]) -> None:
     if found:
         return
-    sentences = [f"{name}: {sentence}" for name, problems in kept.problems() for sentence in problems]
+    sentences = [f"{name}: {one['sentence']}" for name, findings in kept.findings() for one in findings]
     raise NumericError(f"no channel gives {what}" + (f": {sentences[0]}" if sentences else ""), "E0711")
 
 
@@ -139,6 +139,7 @@ def read(path: Union[str, "os.PathLike[str]"], *, channels: Names = None, names:
          time_column: Optional[str] = None, time_unit: Optional[str] = None, format: Optional[str] = None,
          delimiter: Optional[str] = None, decimal: Optional[str] = None, header: Optional[str] = None,
          encoding: Optional[str] = None, skip_rows: Optional[int] = None, overflow_as_missing: Optional[bool] = None,
+         missing: Optional[Sequence[float]] = None,
          skip_repeated_header: Optional[bool] = None, topic: Optional[str] = None, time_source: Optional[str] = None,
          threads: Optional[int] = None) -> Recording:
     """Reads a log of any format that the program reads (docs/formats.md).
@@ -150,6 +151,7 @@ def read(path: Union[str, "os.PathLike[str]"], *, channels: Names = None, names:
     topic        of a log that holds several streams, the one to read; time_source: whose stamps count
     time_column, time_unit, format, delimiter, decimal, header, encoding, skip_rows: as the options of the
     program of these names
+    missing      values that mean "no reading", such as -999
 
     Raises InputError with file, line and column, UsageError for an option that does not fit the file.
     """
@@ -265,8 +267,8 @@ def characterize(source: Source, rate_hz: Optional[float] = None, *, type: str =
     by_name = {c["name"]: _curve(c, curves.get("type", type)) for c in curves["channels"]}
     fits = {c["name"]: _fit(c) for c in kept.fits()["channels"]}
     units_of = {c["name"]: c["unit"] for c in document["recording"]["channels"]}
-    reports = [ChannelReport(name, units_of.get(name, ""), fits.get(name), by_name.get(name), problems) for name,
-               problems in kept.problems()]
+    reports = [ChannelReport(name, units_of.get(name, ""), fits.get(name), by_name.get(name), findings) for name,
+               findings in kept.findings()]
     return Characterization(document["verdict"], reports, document, kept.seconds(), kept)
 
 

@@ -151,9 +151,9 @@ class NoiseFit(_Result):
         return self.document.get("second_opinion")
 
     @property
-    def sentences(self) -> list[str]:
-        """What else is to be known of the fit."""
-        return list(self.document.get("sentences") or [])
+    def findings(self) -> list[dict[str, Any]]:
+        """What else is to be known of the fit: code, severity, sentence…"""
+        return list(self.document.get("findings") or [])
 
     def to_dict(self) -> dict[str, Any]:
         return _plain_document(self.document)
@@ -161,13 +161,13 @@ class NoiseFit(_Result):
 
 @dataclasses.dataclass(frozen=True)
 class ChannelReport(_Result):
-    """A channel of a characterization; what is None could not be had, and `problems` says why."""
+    """A channel of a characterization; what is None could not be had, and `findings` says why."""
 
     name: str
     unit: str
     fit: Optional[NoiseFit]
     allan: Optional[AllanCurve]
-    problems: list[str]
+    findings: list[dict[str, Any]]
 
 
 @dataclasses.dataclass(frozen=True)

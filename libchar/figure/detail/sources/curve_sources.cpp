@@ -12,7 +12,7 @@
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/figure/detail/sources/report_values.hpp"
+#include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/text_table.hpp"

@@ -5,8 +5,8 @@
 
 #include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/figure/detail/sources/curve_sources.hpp"
-#include "libchar/figure/detail/sources/report_values.hpp"
 
 namespace libchar {
 namespace {

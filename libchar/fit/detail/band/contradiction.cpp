@@ -68,7 +68,7 @@ bool mostly_process(const NoiseFit& fit, double m, double dt_s) {
 
 // Of a term, or of none (kTerms): its interval then reaches to what contradicts it.
 void doubt(NoiseFit& fit, std::size_t term, double reach, const std::string& sentence) {
-  fit.sentences.push_back(sentence);
+  fit.findings.push_back(finding("contradicted", sentence));
   if (term == kTerms) return;
   Coefficient& c = fit.term[term];
   if (c.status == Status::detected) c.status = Status::undetermined;

@@ -260,9 +260,10 @@ ModelPoint report_coefficients(const BinProblem& problem,
   }
   report_in_all(problem, all, fit.term);
   if (decision.flicker_or_walk) {
-    fit.sentences.push_back(
+    fit.findings.push_back(finding(
+        "flicker_or_walk",
         "The record shows slow noise but cannot tell bias instability from random walk: each could "
-        "explain it alone. A longer record can tell.");
+        "explain it alone. A longer record can tell."));
   }
   return best.at;
 }
@@ -291,10 +292,11 @@ void report_bounds(const TermSet& fitted, NoiseFit& fit) {
     term.bound = bound[i];
     if (*bound[i] > kUndeterminedAbove && term.status == Status::detected) {
       term.status = Status::undetermined;
-      fit.sentences.push_back(
-          fmt::format("The record is too short for {}: at best it is known to {} (1 sd).",
-                      long_name(static_cast<Term>(i)),
-                      percent_text(*bound[i])));
+      fit.findings.push_back(
+          finding("too_short",
+                  fmt::format("The record is too short for {}: at best it is known to {} (1 sd).",
+                              long_name(static_cast<Term>(i)),
+                              percent_text(*bound[i]))));
     }
     term.seconds_for_10_percent =
         seconds_for(static_cast<Term>(i), 0.10, fit.theta, fit.rate_hz, fitted);

@@ -300,11 +300,12 @@ void report_joint_bounds(const Mixture& log_theta, NoiseFit& fit) {
     term.bound = log_theta[i] / 2;
     if (!(*term.bound > kBadlyKnown) || term.status != Status::detected || i == kLent) continue;
     term.status = Status::undetermined;
-    fit.sentences.push_back(
+    fit.findings.push_back(finding(
+        "too_short",
         fmt::format("The record is too short for {} beside a Gauss-Markov process: at best it is "
                     "known to {} (1 sd).",
                     long_name(static_cast<Term>(i)),
-                    percent_text(*term.bound)));
+                    percent_text(*term.bound))));
   }
 }
 
@@ -360,13 +361,16 @@ void settle_gauss_markov(const std::vector<PowerBin>& bins,
   process.sigma.ci95.low = std::min(process.sigma.ci95.low, *process.sigma.value);
   process.sigma.ci95.high = std::max(process.sigma.ci95.high, *process.sigma.value);
   widen_for_joint_parameter(spread.log_theta, fit);
-  fit.sentences.push_back(fmt::format(
-      "Part of the slow noise is a first-order Gauss-Markov process ({}): white noise, flicker and "
-      "random walk alone do not "
-      "describe the record (2 ln L {:.0f}, above {:.0f} in 1 % of records that they do).",
-      process_text(process.sigma.value.value_or(0), choice.tau_s),
-      choice.likelihood_ratio,
-      kNeeded));
+  fit.findings.push_back(finding(
+      "gauss_markov",
+      fmt::format(
+          "Part of the slow noise is a first-order Gauss-Markov process ({}): white noise, flicker "
+          "and "
+          "random walk alone do not "
+          "describe the record (2 ln L {:.0f}, above {:.0f} in 1 % of records that they do).",
+          process_text(process.sigma.value.value_or(0), choice.tau_s),
+          choice.likelihood_ratio,
+          kNeeded)));
   empty_lent_column(fit);
   fit.gauss_markov = process;
 }
@@ -382,11 +386,12 @@ void report_not_needed(const GaussMarkovChoice& choice, NoiseFit& fit) {
   process.sigma.value = choice.rival_sigma;
   process.tau_s.value = choice.tau_s;
   fit.gauss_markov = process;
-  fit.sentences.push_back(
+  fit.findings.push_back(finding(
+      "gauss_markov_or_terms",
       fmt::format("The record cannot tell its slow noise from a first-order Gauss-Markov process "
                   "({}): that with white noise alone is as "
                   "likely. A longer record can tell.",
-                  process_text(choice.rival_sigma, choice.tau_s)));
+                  process_text(choice.rival_sigma, choice.tau_s))));
 }
 
 }  // namespace libchar

@@ -71,7 +71,7 @@ bool moves(const std::optional<TemperatureEffect>& effect) {
 
 void report_temperature(const TemperatureEffect& effect, const FitOptions& options, NoiseFit& fit) {
   fit.temperature = effect;
-  fit.sentences.push_back(temperature_sentence(effect, options.unit));
+  fit.findings.push_back(finding("temperature", temperature_sentence(effect, options.unit)));
   if (effect.order == 0) return;
   fit.remedies.push_back(
       {"temperature",
@@ -84,16 +84,18 @@ void report_temperature(const TemperatureEffect& effect, const FitOptions& optio
   for (const Term term : {Term::flicker, Term::walk}) {
     const auto i = static_cast<std::size_t>(term);
     if (fit.term[i].status == Status::not_fitted) continue;
-    fit.sentences.push_back(fmt::format("With temperature left in, {} would be {}; it is {}.",
-                                        kTermNames[i].letter,
-                                        coefficient_text(effect.without[i]),
-                                        coefficient_text(fit.term[i])));
+    fit.findings.push_back(
+        finding("temperature",
+                fmt::format("With temperature left in, {} would be {}; it is {}.",
+                            kTermNames[i].letter,
+                            coefficient_text(effect.without[i]),
+                            coefficient_text(fit.term[i]))));
   }
 }
 
 void report_events(const RecordMeans& means, NoiseFit& fit) {
   const EventSearch& search = means.search;
-  for (const std::string& sentence : search.sentences) fit.sentences.push_back(sentence);
+  fit.findings.insert(fit.findings.end(), search.findings.begin(), search.findings.end());
   // What stayed in is not noise, and the coefficients hold it.
   if (search.more || search.telegraph)
     for (Coefficient& term : fit.term)

@@ -560,6 +560,12 @@ struct Study {
     return rate;
   }
 
+  std::optional<double> stated_tick() const {
+    for (const Line& line : preamble_)
+      if (const auto stated = stated_tick_s(line.text)) return stated;
+    return std::nullopt;
+  }
+
   // The rows that are studied: the first ones, of those that are asked for.
   void gather_rows() {
     dialect.filters = filters_of(options, dialect, info);
@@ -579,6 +585,17 @@ struct Study {
           }))
         rows_.push_back(std::move(row));
     }
+  }
+
+  std::vector<std::string> cells_of(std::size_t column) const {
+    std::vector<std::string> out;
+    for (std::size_t offset = dialect.data_offset; offset < head.size();) {
+      const Line line = line_at(head, offset, 0);
+      offset = line.after;
+      const Cells row = cells(line.text);
+      if (column < row.size() && (offset < head.size() || whole)) out.push_back(row[column].text);
+    }
+    return out;
   }
 
   void choose_time() {
@@ -602,7 +619,9 @@ struct Study {
            "`delimiter` says what separates the cells, `skip_rows` where the table begins");
     refuse_curve();
     const auto rate = stated_rate();
-    choose_stamps({rows_, kinds_, style(), rate}, options, dialect, info);
+    const auto whole_head = [this](std::size_t column) { return cells_of(column); };
+    choose_stamps(
+        {rows_, kinds_, style(), rate, stated_tick(), whole_head}, options, dialect, info);
     choose_groups(rows_, options, dialect, info);
     refuse_long_table(rows_, kinds_, options, dialect, info);
     leave_out();

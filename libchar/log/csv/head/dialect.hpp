@@ -39,6 +39,10 @@ struct StampPart {
   int column = -1;           ///< index among all columns, -1 = none
   bool calendar = false;     ///< dates or clock times, else numbers
   std::int64_t unit_ns = 1;  ///< of numbers
+  double zero = 0;           ///< in that unit: days that begin long before 1970
+  /// what the digits behind the mark count, where they are written without leading zeros ("12.5" is
+  /// 12 s and 5 ns); 0 = a fraction
+  std::int64_t fraction_ns = 0;
 };
 
 /// Rows with another value in this column are left out, or (`must`) refused.
@@ -64,9 +68,9 @@ struct Dialect {
   std::vector<RowFilter> filters;
   int group_column = -1;            ///< its values make channels of their own
   std::vector<std::string> groups;  ///< these, in the order of the file
-  bool cycles = false;          ///< each group once, in turn: a turn is a row, at its first stamp
-  bool clock_only = false;      ///< stamps begin again at midnight
-  std::size_t data_offset = 0;  ///< byte at which the first line after the header starts
+  bool cycles = false;  ///< each group once, in turn: a turn is a row, at its first stamp
+  std::int64_t clock_period_ns = 0;   ///< stamps begin again at midnight, or every hour; 0 = never
+  std::size_t data_offset = 0;        ///< byte at which the first line after the header starts
   std::uint64_t first_data_line = 1;  ///< its physical line number
 };
 

@@ -131,6 +131,12 @@ std::optional<double> stated_rate_hz(std::string_view line) {
   return rate;
 }
 
+std::optional<double> stated_tick_s(std::string_view line) {
+  const std::string lower = ascii_lower(line);
+  const Statement said = statement_in(lower);
+  return said.key == "tscale" && said.number && *said.number > 0 ? said.number : std::nullopt;
+}
+
 namespace {
 
 // Text has next to no control characters; NUL bytes are left to the row parser, which knows logs

@@ -17,6 +17,9 @@ namespace libchar::csv {
 /// rate in Hz that a line states; nothing when it states none that can be.
 std::optional<double> stated_rate_hz(std::string_view line);
 
+/// Seconds in one count of the stamps: "tscale,0.001" of Gyroflow's .gcsv.
+std::optional<double> stated_tick_s(std::string_view line);
+
 // What calls itself CSV and is something else.
 
 /// Throws Error(input) with what it is and how to read it: another format by its first bytes,

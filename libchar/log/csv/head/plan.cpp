@@ -23,7 +23,7 @@ Plan plan_columns(Dialect& dialect, const ReadOptions& options, LogInfo& info) {
     table.texts.push_back(column.text);
   }
   plan.dialect = &dialect;
-  plan.overflow_as_missing = options.overflow_as_missing;
+  plan.overflow_as_missing = options.missing.overflow;
   plan.skip_repeated_header = options.skip_repeated_header;
   plan.target.assign(dialect.columns.size(), Plan::kSkip);
   if (table.time) plan.target[*table.time] = Plan::kTime;

@@ -240,7 +240,8 @@ StampDefect read_stamp(std::string_view text,
                        char point,
                        std::int64_t unit_ns,
                        std::int64_t& out,
-                       std::size_t& offset) {
+                       std::size_t& offset,
+                       double zero) {
   offset = 0;
   if (means_missing(text)) return StampDefect::missing;
   const bool negative = text[0] == '-';
@@ -263,6 +264,13 @@ StampDefect read_stamp(std::string_view text,
     ns *= 10;
   }
   if (number.q < 0) ns = rounded_quotient(ns, number.q, number.lost);
+  if (zero > 0 && !negative && ns < limit * limit / 4) {
+    const auto from =
+        static_cast<Int128>(ns) - static_cast<Int128>(zero * static_cast<double>(unit_ns));
+    if (from > INT64_MAX || from < INT64_MIN) return StampDefect::out_of_range;
+    out = static_cast<std::int64_t>(from);
+    return StampDefect::none;
+  }
   if (ns > limit - (negative ? 0U : 1U)) return StampDefect::out_of_range;
   out = negative ? static_cast<std::int64_t>(-static_cast<Int128>(ns))
                  : static_cast<std::int64_t>(ns);

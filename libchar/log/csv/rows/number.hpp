@@ -147,12 +147,13 @@ struct Cell {
 Cell read_cell(std::string_view text, char point);
 
 /// A time stamp: decimal text times `unit_ns` nanoseconds, exact, the half nanosecond rounded to
-/// even.
+/// even. `zero`, in the same unit, is taken off first.
 enum class StampDefect { none, missing, malformed, out_of_range };
 StampDefect read_stamp(std::string_view text,
                        char point,
                        std::int64_t unit_ns,
                        std::int64_t& out,
-                       std::size_t& offset);
+                       std::size_t& offset,
+                       double zero = 0);
 
 }  // namespace libchar::csv

@@ -43,7 +43,8 @@ struct Filling {
       block.time_ns.clear();
     }
     point_at_columns();
-    const bool one_number = !dialect.time.calendar && dialect.more_time.column < 0;
+    const bool one_number =
+        !dialect.time.calendar && dialect.more_time.column < 0 && dialect.time.fraction_ns == 0;
     for (std::size_t i = 0; one_number && i < kNanoseconds.size(); ++i)
       if (dialect.time.unit_ns == kNanoseconds[i]) stamp_digits = static_cast<int>(i);
     // Of two parts of a stamp the one that stands first in a row sets it, the other is added.

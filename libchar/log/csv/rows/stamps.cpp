@@ -15,7 +15,16 @@ namespace {
 struct StampPair {
   std::size_t first = 0, second = 0;
   bool calendar = false;  // a date and its clock time; else seconds and nanoseconds
+  bool days = false;      // days since 1858-11-17 and seconds of the day
 };
+
+// "MJD" and "sod".
+bool days_and_seconds(std::string_view a, std::string_view b) {
+  static constexpr std::array<std::string_view, 6> kSeconds = {
+      "sod", "second of day", "seconds of day", "second_of_day", "seconds_of_day", "sec_of_day"};
+  return ascii_lower(a) == "mjd" &&
+         std::find(kSeconds.begin(), kSeconds.end(), ascii_lower(b)) != kSeconds.end();
+}
 
 bool is_calendar(ColumnKind kind) {
   return kind == ColumnKind::calendar || kind == ColumnKind::date || kind == ColumnKind::clock;
@@ -71,9 +80,11 @@ std::optional<StampPair> find_pair(const StampStudy& study, const Dialect& diale
              clock = static_cast<std::size_t>(place(ColumnKind::clock));
   if (date < study.kinds.size() && clock < study.kinds.size()) return StampPair{date, clock, true};
   if (dialect.has_header) {
-    for (std::size_t c = 0; c + 1 < dialect.columns.size(); ++c)
-      if (seconds_and_nanoseconds(dialect.columns[c].text, dialect.columns[c + 1].text))
-        return StampPair{c, c + 1, false};
+    for (std::size_t c = 0; c + 1 < dialect.columns.size(); ++c) {
+      const std::string &first = dialect.columns[c].text, &second = dialect.columns[c + 1].text;
+      if (seconds_and_nanoseconds(first, second)) return StampPair{c, c + 1, false};
+      if (days_and_seconds(first, second)) return StampPair{c, c + 1, false, true};
+    }
   } else if (dialect.columns.size() > 2 && epoch_and_rest(study.rows)) {
     return StampPair{0, 1, false};
   }
@@ -124,14 +135,20 @@ void choose_date_order(const StampStudy& study,
                        LogInfo& info) {
   std::vector<std::string_view> texts;
   std::string example;
+  std::size_t dates = 0;
   for (const Cells& row : study.rows)
     for (std::size_t c = 0; c < std::min(row.size(), study.kinds.size()); ++c)
       if (study.kinds[c] == ColumnKind::calendar || study.kinds[c] == ColumnKind::date) {
         texts.push_back(row[c].text);
         if (example.empty()) example = row[c].text;
+        dates = c;
       }
   if (texts.empty()) return;
   DateStyle style = date_style(texts, study.style.decimal == ',');
+  if (style.ambiguous && options.date_order == "auto") {
+    const std::vector<std::string> all = study.whole_head(dates);
+    style = date_style({all.begin(), all.end()}, study.style.decimal == ',');
+  }
   if (options.date_order != "auto")
     style = {options.date_order == "day" ? DateOrder::day_first : DateOrder::month_first, false};
   dialect.date_order = style.order;
@@ -144,19 +161,70 @@ void choose_date_order(const StampStudy& study,
 
 void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
   const auto main = static_cast<std::size_t>(dialect.time.column);
-  bool zone = false;
+  bool zone = false, of_hour = false;
   for (const Cells& row : study.rows)
     for (const StampPart* part : {&dialect.time, &dialect.more_time})
       if (part->column >= 0 && static_cast<std::size_t>(part->column) < row.size())
-        if (const auto stamp =
-                read_calendar(row[static_cast<std::size_t>(part->column)].text, dialect.date_order))
+        if (const auto stamp = read_calendar(row[static_cast<std::size_t>(part->column)].text,
+                                             dialect.date_order)) {
           zone = zone || stamp->zone;
-  dialect.clock_only = study.kinds[main] == ColumnKind::clock && dialect.more_time.column < 0;
-  info.dialect.push_back(dialect.clock_only ? "stamps are times of day"
-                         : zone             ? "calendar stamps, with their time zone"
-                                            : "calendar stamps, as written, without a time zone");
+          of_hour = of_hour || stamp->of_hour;
+        }
+  constexpr std::int64_t kHour = std::int64_t{3600} * 1000000000;
+  const bool clock_only = study.kinds[main] == ColumnKind::clock && dialect.more_time.column < 0;
+  dialect.clock_period_ns = clock_only ? (of_hour ? kHour : 24 * kHour) : 0;
+  info.dialect.push_back(of_hour      ? "stamps are minutes and seconds of an hour"
+                         : clock_only ? "stamps are times of day"
+                         : zone       ? "calendar stamps, with their time zone"
+                                      : "calendar stamps, as written, without a time zone");
   info.time.unit = "ns";
   info.time.unit_ns = 1;
+  info.time.local = !zone;
+}
+
+/// Whether the first stamps rise, and their digits behind the mark are of one number.
+struct Fractions {
+  bool rise = true, alike = true;
+  std::size_t most = 0;  // digits
+};
+
+Fractions fractions_of(const StampStudy& study, const Dialect& dialect, const StampPart& part) {
+  Fractions out;
+  std::optional<std::int64_t> last;
+  std::size_t digits = 0;
+  for (const Cells& row : study.rows) {
+    const auto column = static_cast<std::size_t>(part.column);
+    std::int64_t ns = 0;
+    std::size_t offset = 0;
+    if (column >= row.size() ||
+        read_part(row[column].text, part, dialect, ns, offset) != StampDefect::none)
+      continue;
+    const std::string& text = row[column].text;
+    const std::size_t mark = text.find(dialect.decimal);
+    const std::size_t behind = mark == std::string::npos ? 0 : text.size() - mark - 1;
+    out.alike = out.alike && (digits == 0 || behind == digits);
+    out.rise = out.rise && (!last || ns > *last);
+    digits = behind;
+    out.most = std::max(out.most, behind);
+    last = ns;
+  }
+  return out;
+}
+
+// printf("%d.%d", seconds, nanoseconds): stamps that step to and fro as fractions, and rise as two numbers.
+void find_split_seconds(const StampStudy& study, Dialect& dialect, LogInfo& info) {
+  StampPart& part = dialect.time;
+  const Fractions as_read = fractions_of(study, dialect, part);
+  if (part.unit_ns != 1000000000 || as_read.rise || as_read.alike) return;
+  part.fraction_ns = as_read.most > 6 ? 1 : as_read.most > 3 ? 1000 : 1000000;
+  if (fractions_of(study, dialect, part).rise)
+    info.guesses.push_back(
+        fmt::format("stamps: the digits behind the mark are {} without leading zeros",
+                    part.fraction_ns == 1      ? "nanoseconds"
+                    : part.fraction_ns == 1000 ? "microseconds"
+                                               : "milliseconds"));
+  else
+    part.fraction_ns = 0;
 }
 
 TableFront front_of(const StampStudy& study,
@@ -176,6 +244,7 @@ TableFront front_of(const StampStudy& study,
   table.named = dialect.has_header;
   table.text = true;
   table.stated_rate_hz = study.stated_rate_hz;
+  table.stated_tick_s = study.stated_tick_s;
   return table;
 }
 
@@ -188,7 +257,18 @@ StampDefect read_part(std::string_view text,
                       std::size_t& offset) {
   if (!part.calendar) {
     const std::size_t label = dialect.has_header ? 0 : label_length(text);
-    return read_stamp(text.substr(label), dialect.decimal, part.unit_ns, out, offset);
+    if (const std::size_t mark = text.find(dialect.decimal);
+        part.fraction_ns > 0 && mark != std::string_view::npos) {
+      std::int64_t behind = 0;
+      StampDefect defect =
+          read_stamp(text.substr(mark + 1), dialect.decimal, part.fraction_ns, behind, offset);
+      if (defect == StampDefect::none)
+        defect = read_stamp(
+            text.substr(label, mark - label), dialect.decimal, part.unit_ns, out, offset);
+      out += defect == StampDefect::none ? behind : 0;
+      return defect;
+    }
+    return read_stamp(text.substr(label), dialect.decimal, part.unit_ns, out, offset, part.zero);
   }
   offset = 0;
   const auto stamp = read_calendar(text, dialect.date_order);
@@ -208,8 +288,13 @@ void choose_stamps(const StampStudy& study,
   TableFront table = front_of(study, dialect, pair);
   const auto part_of = [&](std::size_t column) {
     const bool calendar = column < study.kinds.size() && is_calendar(study.kinds[column]);
-    const bool seconds = pair && !pair->calendar && column == pair->first;
-    return StampPart{static_cast<int>(column), calendar, seconds ? 1000000000 : 1};
+    StampPart part{static_cast<int>(column), calendar};
+    if (!pair || pair->calendar) return part;
+    constexpr std::int64_t kSecond = 1000000000;
+    if (column == pair->first) part.unit_ns = pair->days ? 86400 * kSecond : kSecond;
+    if (column == pair->first && pair->days) part.zero = 40587;
+    if (column == pair->second && pair->days) part.unit_ns = kSecond;
+    return part;
   };
   const auto partner_of = [&](std::size_t column) {
     return pair && column == pair->first ? part_of(pair->second) : StampPart{};
@@ -233,15 +318,20 @@ void choose_stamps(const StampStudy& study,
     info.time.unit_ns = 1;
     const std::string& rest = dialect.columns[pair->second].name;
     const std::string sentence =
-        fmt::format("stamps: seconds in {} and nanoseconds in {}",
+        fmt::format("stamps: {} in {} and {} in {}",
+                    pair->days ? "days (MJD)" : "seconds",
                     printable(info.time.column),
+                    pair->days ? "seconds" : "nanoseconds",
                     rest.empty() ? fmt::format("c{}", pair->second) : printable(rest));
     if (dialect.has_header)
       info.dialect.push_back(sentence);
     else
       info.guesses.push_back(sentence + " (`time_column` none keeps them as channels)");
   } else {
-    dialect.time.unit_ns = find_time_unit(table, *index, options, info);
+    const StampUnit unit = find_time_unit(table, *index, options, info);
+    dialect.time.unit_ns = unit.ns;
+    dialect.time.zero = unit.zero;
+    find_split_seconds(study, dialect, info);
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // Which columns of a CSV file are its stamps, and how they are written.
 
+#include <functional>
+
 #include "libchar/log/csv/head/columns.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
 
@@ -12,6 +14,9 @@ struct StampStudy {
   const std::vector<ColumnKind>& kinds;
   NumberStyle style;
   std::optional<double> stated_rate_hz;
+  std::optional<double> stated_tick_s;
+  std::function<std::vector<std::string>(std::size_t column)>
+      whole_head;  ///< the cells of a column as far as the head goes: what the first rows leave open
 };
 
 /// Fills the stamps of `dialect`, and what is known of the time base and guessed of it in `info`.

@@ -142,14 +142,14 @@ std::string MessageTopics::stamps(std::size_t topic) const {
 void MessageTopics::select(std::size_t topic,
                            const std::vector<std::size_t>& fields,
                            std::optional<std::size_t> time,
-                           std::int64_t unit_ns) {
+                           StampUnit unit) {
   selected_ = true;
   topic_ = topic;
   fields_ = fields.size();
   source_ = source_of(topic);
   MessageDecoder& decoder = *decoders_[topic].decoder;
   time_field_ = time && time != decoder.stamp();
-  unit_ns_ = unit_ns;
+  unit_ns_ = unit.ns;
   if (time && !time_field_) source_ = Source::header;
   if (!time && source_ == Source::log && time_source_ == "auto" && decoder.stamp())
     early_.add("zero_stamp",

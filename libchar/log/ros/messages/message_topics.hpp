@@ -41,7 +41,7 @@ class MessageTopics : public TopicReader {
   void select(std::size_t topic,
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
-              std::int64_t unit_ns) override;
+              StampUnit unit) override;
   bool next(RowBlock& block, std::size_t most, Warnings& warnings) override;
   /// What was found when topics were listed, unless rows were read, whose warnings say it too.
   void finish(Warnings& warnings) override;

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/text/spelling.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
@@ -15,21 +14,6 @@ namespace {
 
 // A time within this share of a sample is the sample's own: rounding must not ask for a neighbour.
 constexpr double kOnSample = 1e-6;
-
-std::size_t column_of(const LogInfo& log, const std::string& channel, const std::string& scene) {
-  std::vector<std::string> names;
-  for (std::size_t c = 0; c < log.channels.size(); ++c) {
-    if (log.channels[c].name == channel) return c;
-    names.push_back(log.channels[c].name);
-  }
-  const auto near = nearest(channel, names);
-  throw Error({ErrorKind::input,
-               "E0900",
-               scene,
-               fmt::format("the reference {} has no channel of this name", log.file),
-               channel,
-               did_you_mean(near, "inspect lists the channels")});
-}
 
 }  // namespace
 
@@ -71,11 +55,7 @@ ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Pro
   try {
     read = read_recording(*reference.recording, reading, progress);
   } catch (const Error& error) {
-    if (error.problem().kind != ErrorKind::usage) throw;
-    Problem problem = error.problem();
-    problem.kind = ErrorKind::input;
-    if (problem.code.empty()) problem.code = "E0900";
-    throw Error(problem);
+    throw of_scene(error, *reference.recording);
   }
   track.rate_hz = read.info.time.rate_hz;
   if (!(track.rate_hz > 0))
@@ -86,7 +66,7 @@ ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Pro
                  "",
                  "reference: {recording: {file: …, rate_hz: …}}"});
   for (const std::string& channel : reference.channels) {
-    const std::size_t column = column_of(read.info, channel, scene.file);
+    const std::size_t column = column_of(read.info, channel, scene.file, "reference");
     track.values.push_back(read.samples[column]);
     track.units.push_back(read.info.channels[column].unit);
   }

@@ -21,17 +21,6 @@ struct Nothing final : BlockSink {
   void block(const SampleBlock&) override {}
 };
 
-std::size_t column_of(const LogInfo& log, const std::string& name) {
-  for (std::size_t c = 0; c < log.channels.size(); ++c)
-    if (log.channels[c].name == name) return c;
-  throw Error({ErrorKind::input,
-               "E0900",
-               log.file,
-               "the recording has no channel of this name",
-               name,
-               "inspect lists the channels"});
-}
-
 double median_step(const std::vector<double>& stamps) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < stamps.size(); ++k) steps.push_back(stamps[k] - stamps[k - 1]);
@@ -94,7 +83,7 @@ std::vector<Column> columns_of(const StampedRows& rows,
                                std::size_t first_angle) {
   std::vector<Column> out;
   for (const std::string& name : wanted) {
-    const std::size_t c = column_of(rows.info, name);
+    const std::size_t c = column_of(rows.info, name, rows.info.file, "recording");
     const bool angle = out.size() >= first_angle;
     out.push_back({&rows.samples[c], angle ? full_turn(rows.info.channels[c].unit) : 0});
   }

@@ -49,21 +49,22 @@ class Differences {
   std::vector<std::string>* out_;
 };
 
-void compare_sources(const ReplaySummary& a, const ReplaySummary& b, Differences& found) {
-  if (a.simulated != b.simulated)
+void compare_sources(const ReplayReport& a, const ReplayReport& b, Differences& found) {
+  if (a.scene.simulated != b.scene.simulated)
     return found.add("the scene is",
-                     a.simulated ? "a simulation" : "a recording",
-                     b.simulated ? "a simulation" : "a recording");
-  if (a.simulated && a.seed != b.seed)
-    return found.add("seed of the simulation", std::to_string(a.seed), std::to_string(b.seed));
-  if (a.simulated && a.identity != b.identity)
+                     a.scene.simulated ? "a simulation" : "a recording",
+                     b.scene.simulated ? "a simulation" : "a recording");
+  if (a.scene.simulated && a.scene.seed != b.scene.seed)
+    return found.add(
+        "seed of the simulation", std::to_string(a.scene.seed), std::to_string(b.scene.seed));
+  if (a.scene.simulated && a.scene.identity != b.scene.identity)
     return found.say(
         "the same seed, but another simulation: its sensors, models, truth or faults differ");
-  if (a.files.size() != b.files.size())
-    return found.add(
-        "number of logs", std::to_string(a.files.size()), std::to_string(b.files.size()));
-  for (std::size_t i = 0; i < a.files.size(); ++i) {
-    const FileSummary &left = a.files[i], &right = b.files[i];
+  const std::vector<DocumentHead::File>&in_a = a.head.input, &in_b = b.head.input;
+  if (in_a.size() != in_b.size())
+    return found.add("number of logs", std::to_string(in_a.size()), std::to_string(in_b.size()));
+  for (std::size_t i = 0; i < in_a.size(); ++i) {
+    const DocumentHead::File &left = in_a[i], &right = in_b[i];
     if (left.sha256.empty() || right.sha256.empty())
       found.say(fmt::format("the sha256 of {} is not in both reports",
                             left.sha256.empty() ? left.path : right.path));
@@ -112,10 +113,10 @@ bool same_names(const std::string& what,
   return false;
 }
 
-void compare_sensors(const ReplaySummary& a, const ReplaySummary& b, Differences& found) {
+void compare_sensors(const ReplayReport& a, const ReplayReport& b, Differences& found) {
   if (!same_names("sensor", a.sensors, b.sensors, found)) return;
   for (std::size_t i = 0; i < a.sensors.size(); ++i) {
-    const SensorSummary &left = a.sensors[i], &right = b.sensors[i];
+    const SensorResult &left = a.sensors[i], &right = b.sensors[i];
     if (left.unit != right.unit)
       found.add("unit of sensor " + left.name, or_nothing(left.unit), or_nothing(right.unit));
     if (left.h != right.h)
@@ -126,11 +127,11 @@ void compare_sensors(const ReplaySummary& a, const ReplaySummary& b, Differences
 
 // The sensors' own errors do not depend on any algorithm: they tell samples and truth apart where
 // nothing else does (scale, rest, resampling, lag).
-void compare_own_errors(const ReplaySummary& a, const ReplaySummary& b, Differences& found) {
+void compare_own_errors(const ReplayReport& a, const ReplayReport& b, Differences& found) {
   std::vector<std::string> names;
   std::size_t first = 0;
   for (std::size_t i = 0; i < a.sensors.size(); ++i)
-    if (!same_number(a.sensors[i].rmse, b.sensors[i].rmse)) {
+    if (!same_number(a.sensors[i].error.rmse, b.sensors[i].error.rmse)) {
       if (names.empty()) first = i;
       names.push_back(a.sensors[i].name);
     }
@@ -139,21 +140,20 @@ void compare_own_errors(const ReplaySummary& a, const ReplaySummary& b, Differen
       "the samples or their reference differ (scale, rest, lag or resampling): sensor {} alone has "
       "an RMSE of {} in A, {} in B{}",
       names[0],
-      brief_text(a.sensors[first].rmse, 7),
-      brief_text(b.sensors[first].rmse, 7),
+      brief_text(a.sensors[first].error.rmse, 7),
+      brief_text(b.sensors[first].error.rmse, 7),
       names.size() > 1 ? fmt::format("; so do {} others", names.size() - 1) : ""));
 }
 
-void compare_references(const ReplaySummary& a, const ReplaySummary& b, Differences& found) {
-  if (a.has_reference != b.has_reference)
-    return found.add(
-        "reference", a.has_reference ? "one" : "none", b.has_reference ? "one" : "none");
-  if (!a.has_reference) return;
-  if (a.reference_use != b.reference_use)
-    found.add("use of the reference", a.reference_use, b.reference_use);
-  if (!same_number(a.lag_s, b.lag_s))
-    found.add(
-        "lag behind the reference", brief_text(a.lag_s, 6) + " s", brief_text(b.lag_s, 6) + " s");
+void compare_references(const ReplayReport& a, const ReplayReport& b, Differences& found) {
+  if (a.reference.has_value() != b.reference.has_value())
+    return found.add("reference", a.reference ? "one" : "none", b.reference ? "one" : "none");
+  if (!a.reference) return;
+  if (a.reference->use != b.reference->use)
+    found.add("use of the reference", a.reference->use, b.reference->use);
+  const double left = a.reference->lag_s, right = b.reference->lag_s;
+  if (!same_number(left, right))
+    found.add("lag behind the reference", brief_text(left, 6) + " s", brief_text(right, 6) + " s");
   if (!same_names("true input", a.inputs, b.inputs, found)) return;
   for (std::size_t j = 0; j < a.inputs.size(); ++j)
     if (a.inputs[j].unit != b.inputs[j].unit)
@@ -162,7 +162,7 @@ void compare_references(const ReplaySummary& a, const ReplaySummary& b, Differen
                 or_nothing(b.inputs[j].unit));
 }
 
-std::string words(const FaultSummary& f) {
+std::string words(const ReplayReport::Fault& f) {
   return fmt::format("{} {}{} from {} s",
                      f.sensor,
                      f.kind,
@@ -170,12 +170,12 @@ std::string words(const FaultSummary& f) {
                      brief_text(f.from_s, 7));
 }
 
-void compare_faults(const ReplaySummary& a, const ReplaySummary& b, Differences& found) {
+void compare_faults(const ReplayReport& a, const ReplayReport& b, Differences& found) {
   if (a.faults.size() != b.faults.size())
     return found.add(
         "number of faults", std::to_string(a.faults.size()), std::to_string(b.faults.size()));
   for (std::size_t i = 0; i < a.faults.size(); ++i) {
-    const FaultSummary &left = a.faults[i], &right = b.faults[i];
+    const ReplayReport::Fault &left = a.faults[i], &right = b.faults[i];
     if (left.sensor != right.sensor || left.kind != right.kind ||
         !same_number(left.value, right.value) || !same_number(left.from_s, right.from_s) ||
         !same_number(left.to_s, right.to_s))
@@ -183,7 +183,9 @@ void compare_faults(const ReplaySummary& a, const ReplaySummary& b, Differences&
   }
 }
 
-void compare_options(const AlgorithmSummary& a, const AlgorithmSummary& b, Differences& found) {
+void compare_options(const ReplayReport::Algorithm& a,
+                     const ReplayReport::Algorithm& b,
+                     Differences& found) {
   for (const auto& [name, value] : a.options)
     for (const auto& [other, its] : b.options)
       if (name == other && !same_number(value, its))
@@ -192,7 +194,7 @@ void compare_options(const AlgorithmSummary& a, const AlgorithmSummary& b, Diffe
 
 }  // namespace
 
-std::vector<std::string> unlike(const ReplaySummary& a, const ReplaySummary& b) {
+std::vector<std::string> unlike(const ReplayReport& a, const ReplayReport& b) {
   std::vector<std::string> out;
   Differences found(out);
   compare_sources(a, b, found);
@@ -212,15 +214,15 @@ std::vector<std::string> unlike(const ReplaySummary& a, const ReplaySummary& b) 
 std::vector<std::string> remarks(const Comparison& c) {
   std::vector<std::string> out;
   Differences found(out);
-  if (c.a.program != c.b.program)
-    found.add("program", or_nothing(c.a.program), or_nothing(c.b.program));
-  const auto learning = [](const ReplaySummary& r) {
+  if (c.a.head.program != c.b.head.program)
+    found.add("program", or_nothing(c.a.head.program), or_nothing(c.b.head.program));
+  const auto learning = [](const ReplayReport& r) {
     return r.learning ? words(*r.learning) : std::string("none");
   };
   if (learning(c.a) != learning(c.b)) found.add("learning window", learning(c.a), learning(c.b));
   std::vector<std::string> names;
-  for (const SensorSummary& left : c.a.sensors)
-    for (const SensorSummary& right : c.b.sensors)
+  for (const SensorResult& left : c.a.sensors)
+    for (const SensorResult& right : c.b.sensors)
       if (left.name == right.name &&
           !same_number(left.noise_variance.value_or(kNone), right.noise_variance.value_or(kNone)))
         names.push_back(left.name);

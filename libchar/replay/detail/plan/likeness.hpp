@@ -12,7 +12,7 @@ namespace libchar {
 inline constexpr std::size_t kMostNamed = 4;
 
 /// Why these are not two replays of one scene, a sentence each; empty: they are.
-std::vector<std::string> unlike(const ReplaySummary& a, const ReplaySummary& b);
+std::vector<std::string> unlike(const ReplayReport& a, const ReplayReport& b);
 
 /// What differs and makes no other scene of it: learning window, options, noise levels, program.
 std::vector<std::string> remarks(const Comparison& comparison);

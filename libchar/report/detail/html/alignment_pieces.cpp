@@ -3,13 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <nlohmann/json.hpp>
-
 #include "libchar/core/text/text.hpp"
 #include "libchar/replay/view/alignment_words.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
 
 namespace libchar {
 namespace {
@@ -17,110 +13,16 @@ namespace {
 /// More sensors than these fill a terminal.
 constexpr std::size_t kMostTextRows = 16;
 
-// Width by characters, not by bytes: "±" is one.
-std::size_t characters(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
-}
-
-std::string columns(const WordTable& table) {
-  std::vector<std::size_t> widths(table.head.size(), 0);
-  const auto measure = [&](const std::vector<std::string>& row) {
-    for (std::size_t c = 0; c < row.size(); ++c)
-      widths[c] = std::max(widths[c], characters(printable(row[c])));
-  };
-  measure(table.head);
-  for (const auto& row : table.rows) measure(row);
-  std::string out;
-  const auto add = [&](const std::vector<std::string>& row) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string cell = printable(row[c]);
-      const std::string space(widths[c] - characters(cell), ' ');
-      out += c == 0 ? cell + space : "  " + space + cell;
-    }
-    out += "\n";
-  };
-  add(table.head);
-  for (const auto& row : table.rows) add(row);
-  return out;
-}
-
-std::string markdown_table(const WordTable& table) {
-  std::string out = "|", line = "\n|";
-  for (const std::string& head : table.head) {
-    out += " " + markdown_text(head) + " |";
-    line += "---|";
-  }
-  out += line + "\n";
-  for (const auto& row : table.rows) {
-    out += "|";
-    for (const std::string& cell : row) out += " " + markdown_text(cell) + " |";
-    out += "\n";
-  }
-  return out;
-}
-
-std::string html_table(const WordTable& table) {
-  std::string out = "<div class=\"wide\"><table>\n" + table_head(table.head);
-  for (const auto& row : table.rows) out += table_row(row);
-  return out + "</tbody></table></div>\n";
-}
-
-Json term_json(double value, double error) {
-  return {{"value", json_number(value)}, {"standard_error", json_number(error)}};
-}
-
-Json channel_json(const ReplayResult& r, std::size_t i) {
-  const fusion::ChannelAlignment& c = r.alignment->learnt.channels[i];
-  Json cross = Json::array();
-  for (std::size_t k = 0; k < c.cross.size(); ++k)
-    cross.push_back(term_json(c.cross[k], c.cross_se[k]));
-  return {{"sensor", json_text(r.sensors[i].name)},
-          {"aligned", c.used},
-          {"delay_s", term_json(c.delay / r.rate_hz, c.delay_se / r.rate_hz)},
-          {"bias", term_json(c.bias, c.bias_se)},
-          {"gain", term_json(c.gain, c.gain_se)},
-          {"cross", std::move(cross)},
-          {"low_limit", json_number(r.alignment->learnt.limits[i].low)},
-          {"high_limit", json_number(r.alignment->learnt.limits[i].high)}};
-}
-
-Json budget_json(const ReplayResult& r) {
-  const fusion::ErrorBudget& budget = r.alignment->budget;
-  Json sensors = Json::array(), savings = Json::object();
-  for (std::size_t k = 0; k < budget.channels.size(); ++k) {
-    Json parts = Json::object();
-    for (std::size_t p = 0; p < budget.channels[k].parts.size(); ++p) {
-      const fusion::PartShare& part = budget.channels[k].parts[p];
-      parts[std::string(name_of(static_cast<fusion::ErrorPart>(p)))] = {
-          {"share", json_number(part.share)},
-          {"share_ci95", interval_json(part.ci95)},
-          {"saving", json_number(part.saving)}};
-    }
-    sensors.push_back({{"sensor", json_text(r.sensors[r.alignment->budgeted[k]].name)},
-                       {"rms", json_number(budget.channels[k].rms)},
-                       {"parts", std::move(parts)}});
-  }
-  for (std::size_t p = 0; p < budget.savings.size(); ++p)
-    savings[std::string(name_of(static_cast<fusion::ErrorPart>(p)))] =
-        json_number(budget.savings[p]);
-  return {{"instants", budget.instants},
-          {"rms_as_recorded", json_number(budget.before)},
-          {"rms_aligned", json_number(budget.after)},
-          {"savings", std::move(savings)},
-          {"sensors", std::move(sensors)}};
-}
-
 }  // namespace
 
-std::string alignment_text(const ReplayView& view) {
+std::string alignment_text(const ReplayView& view, const TextLook& look) {
   const ReplayResult& r = *view.result;
   if (!r.alignment) return "";
   const AlignmentWords words = alignment_words(r, *r.alignment);
   std::string out = "\n" + printable(fmt::format("{}", fmt::join(words.sentences, " "))) + "\n";
   if (r.sensors.size() > kMostTextRows) return out;
-  return out + "\n" + columns(words.learnt) + "\nerror budget, shares of the mean square\n" +
-         columns(words.budget);
+  return out + "\n" + terminal_table(words.learnt, look, "") + "\n" +
+         terminal_table(words.budget, look, "");
 }
 
 std::string alignment_markdown(const ReplayView& view) {
@@ -128,8 +30,7 @@ std::string alignment_markdown(const ReplayView& view) {
   if (!r.alignment) return "";
   const AlignmentWords words = alignment_words(r, *r.alignment);
   return "\n## Alignment\n\n" + markdown_text(fmt::format("{}", fmt::join(words.sentences, " "))) +
-         "\n\n" + markdown_table(words.learnt) + "\n## Error budget\n\n" +
-         markdown_table(words.budget);
+         "\n\n" + table_text(words.learnt) + "\n" + table_text(words.budget);
 }
 
 std::string alignment_html(const ReplayView& view) {
@@ -139,28 +40,11 @@ std::string alignment_html(const ReplayView& view) {
   std::string out = "<section class=\"part\" id=\"alignment\">\n<h2>Alignment</h2>\n";
   for (const std::string& sentence : words.sentences) out += "<p>" + html_text(sentence) + "</p>\n";
   return out + "<div class=\"copy-place\" data-copy=\"alignment\"></div>\n" +
-         html_table(words.learnt) + "<h3>Error budget</h3>\n" + html_table(words.budget) +
-         "<p class=\"note\">Shares of each sensor’s mean square error over the evaluation, with "
+         html_table(words.learnt) + html_table(words.budget) +
+         "<p class=\"note\">Shares are of each sensor’s mean square error over the evaluation, "
+         "with "
          "95 % intervals; last row: what the fused error would lose. Jitter: the part of what "
          "alignment leaves that follows the square of the input’s slope.</p>\n</section>\n";
-}
-
-Json alignment_json(const ReplayResult& r) {
-  const AlignmentResult& a = *r.alignment;
-  Json sensors = Json::array(), notes = Json::array();
-  for (std::size_t i = 0; i < a.learnt.channels.size(); ++i) sensors.push_back(channel_json(r, i));
-  for (const std::string& note : a.learnt.notes) notes.push_back(json_text(note));
-  return {
-      {"from_s", json_number(a.window.from_s)},
-      {"to_s", json_number(a.window.to_s)},
-      {"instants", a.learnt.instants},
-      {"taught", a.by_reference},
-      {"applied", a.applied},
-      {"judged_where_learnt", a.overlaps},
-      {"interpolation", a.learnt.interpolation == fusion::Interpolation::sinc ? "sinc" : "cubic"},
-      {"notes", std::move(notes)},
-      {"sensors", std::move(sensors)},
-      {"budget", budget_json(r)}};
 }
 
 }  // namespace libchar

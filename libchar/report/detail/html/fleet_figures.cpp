@@ -9,13 +9,15 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/report/detail/charts.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
 #include "libchar/report/detail/html/many_pieces.hpp"
-#include "libchar/report/detail/svg/svg_lot.hpp"
 
 namespace libchar {
 namespace {
+
+constexpr PageTable kMany{.css = "many", .most = 200, .rest = "lot.json"};
 
 /// To a tenth of a degree, without zeros behind it.
 std::string celsius(double t) {
@@ -45,6 +47,10 @@ std::string not_counted(const LotCounts& c) {
                                     std::pair(c.no_result, "without it")})
     if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count_text(count), what);
   return out;
+}
+
+std::string counted_text(const LotCounts& c) {
+  return fmt::format("{} of {}", count_text(c.counted), count_text(c.members));
 }
 
 std::string mean_text(const std::optional<LotFigures>& f, const std::string& unit) {
@@ -112,33 +118,24 @@ std::string chart_of(const FleetReport& report, const QuantityLot& q, const std:
   }
   // Of very many batches the bounds would be all that is seen.
   if (bounds.size() > 60) bounds.clear();
-  return svg_control_chart(*q.chart, q.charted.size(), axis_of(q), beyond, bounds, title);
+  return control_figure(*q.chart, q.charted.size(), axis_of(q), beyond, bounds, title);
 }
 
 std::string batch_table(const QuantityLot& q) {
   if (q.batches.empty()) return "";
-  constexpr std::size_t kMost = 200;
   const bool logarithm = in_logarithm(q.quantity);
-  std::string rows =
-      "<div class=\"wide\"><table class=\"many\">\n" +
-      table_head({"Batch", "Mean", "Spread (sd)", "Median", "Counted", "Not counted"});
-  for (std::size_t b = 0; b < std::min(kMost, q.batches.size()); ++b) {
-    const BatchLot& one = q.batches[b];
-    rows += table_row(
-        {batch_title(one.batch),
-         mean_text(one.figures, q.unit) +
-             (one.in_figures > one.counts.counted ? ", of " + count_text(one.in_figures) : ""),
-         one.figures ? spread_text(one.figures->spread, one.figures->spread_ci95, logarithm, q.unit)
-                     : "–",
-         std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit,
-         fmt::format("{} of {}", count_text(one.counts.counted), count_text(one.counts.members)),
-         not_counted(one.counts)});
-  }
-  rows += "</tbody></table></div>\n";
-  if (q.batches.size() > kMost)
-    rows += fmt::format("<p class=\"note\">{} more batches stand in lot.json.</p>\n",
-                        q.batches.size() - kMost);
-  return folded(fmt::format("{} batches", q.batches.size()), rows);
+  Table out("batch|mean|spread (sd)|median|counted|not counted");
+  for (const BatchLot& one : q.batches)
+    out.add({batch_title(one.batch),
+             mean_text(one.figures, q.unit) +
+                 (one.in_figures > one.counts.counted ? ", of " + count_text(one.in_figures) : ""),
+             one.figures
+                 ? spread_text(one.figures->spread, one.figures->spread_ci95, logarithm, q.unit)
+                 : "–",
+             std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit,
+             counted_text(one.counts),
+             not_counted(one.counts)});
+  return folded(fmt::format("{} batches", q.batches.size()), html_table(out, kMany));
 }
 
 std::string range_text(const Interval& range_c) {
@@ -190,20 +187,14 @@ std::string reference_sentence(const QuantityLot& q) {
 
 std::string slope_table(const QuantityLot& q, std::span<const DeviceRecord> records) {
   if (!q.temperatures || q.temperatures->slopes.empty()) return "";
-  constexpr std::size_t kMost = 200;
-  const std::vector<DeviceSlope>& slopes = q.temperatures->slopes;
-  std::string rows = "<div class=\"wide\"><table class=\"many\">\n" +
-                     table_head({"Device", "Coefficient", "Recordings", "At"});
-  for (std::size_t i = 0; i < std::min(kMost, slopes.size()); ++i)
-    rows += table_row({records[slopes[i].recording].device,
-                       number_text(slopes[i].value) + " " + brackets(slopes[i].ci95) + " " + q.unit,
-                       count_text(slopes[i].recordings),
-                       range_text(slopes[i].temperature_c)});
-  rows += "</tbody></table></div>\n";
-  if (slopes.size() > kMost)
-    rows += fmt::format("<p class=\"note\">{} more devices stand in lot.json.</p>\n",
-                        count_text(slopes.size() - kMost));
-  return folded(fmt::format("Coefficients of {}", plural(slopes.size(), "device")), rows);
+  Table out("device|coefficient|recordings|at");
+  for (const DeviceSlope& slope : q.temperatures->slopes)
+    out.add({records[slope.recording].device,
+             number_text(slope.value) + " " + brackets(slope.ci95) + " " + q.unit,
+             count_text(slope.recordings),
+             range_text(slope.temperature_c)});
+  return folded(fmt::format("Coefficients of {}", plural(out.rows.size(), "device")),
+                html_table(out, kMany));
 }
 
 /// What the mean is worth where devices are missing in it.
@@ -288,7 +279,7 @@ std::string sentences(const QuantityLot& q) {
 struct AllanFigure {
   std::string measures, unit, deviation;
   double to_si = 1;
-  std::vector<SvgCurve> curves;
+  std::vector<FigureSeries> curves;
 };
 
 AllanFigure& figure_of(const Channel& channel,
@@ -322,12 +313,14 @@ void add_curve(const FleetReport& report,
   const auto unit = find_unit(result.channel.unit);
   AllanFigure& figure = figure_of(result.channel, unit, figures);
   figure.deviation = name_of(result.allan.type);
-  SvgCurve curve = allan_svg(result.allan, unit ? unit->to_si / figure.to_si : 1);
-  curve.name = result.channel.name + " · " + report.records[recording].device;
-  curve.colour = figure.curves.size();
-  curve.strong = stands_out(*report.lot, recording, channel);
-  if (curve.strong) curve.name += " (stands out)";
-  figure.curves.push_back(std::move(curve));
+  const bool strong = stands_out(*report.lot, recording, channel);
+  figure.curves.push_back(allan_series(result.allan,
+                                       figure.curves.size(),
+                                       result.channel.name + " · " +
+                                           report.records[recording].device +
+                                           (strong ? " (stands out)" : ""),
+                                       strong,
+                                       unit ? unit->to_si / figure.to_si : 1));
 }
 
 }  // namespace
@@ -340,17 +333,6 @@ std::string group_title(const QuantityLot& q, const FleetLot& lot) {
   return lot.types.size() < 2 ? q.group : q.group + " of " + (q.type.empty() ? "no type" : q.type);
 }
 
-std::vector<std::string> quantity_heads(const FleetLot& lot, bool of_kind) {
-  std::vector<std::string> out = {
-      "Group", "What", "Mean", "Spread (sd)", "95 % of devices", "Counted", "Not counted"};
-  if (lot.batches.size() > 1) out.emplace_back("Batches alike");
-  const bool limited = std::any_of(lot.quantities.begin(),
-                                   lot.quantities.end(),
-                                   [](const QuantityLot& q) { return q.capability.has_value(); });
-  if (limited && !of_kind) out.emplace_back("Limit");
-  return out;
-}
-
 /// Where the middle 95 % lie; of one device, its value.
 std::string devices_text(const QuantityLot& q) {
   if (q.counts.counted == 0) return "–";
@@ -359,19 +341,23 @@ std::string devices_text(const QuantityLot& q) {
   return fmt::format("{} … {} {}", low, number_text(q.quantiles[5], 3), q.unit);
 }
 
-std::vector<std::string> quantity_cells(const QuantityLot& q, const FleetLot& lot) {
-  const bool logarithm = in_logarithm(q.quantity);
-  std::vector<std::string> out = {
-      group_title(q, lot),
-      title_of(q.quantity),
-      mean_text(q.figures, q.unit) + off_text(q),
-      q.figures ? spread_text(q.figures->spread, q.figures->spread_ci95, logarithm, q.unit) : "–",
-      devices_text(q),
-      fmt::format("{} of {}", count_text(q.counts.counted), count_text(q.counts.members)),
-      not_counted(q.counts)};
-  const std::size_t columns = quantity_heads(lot, q.of_kind).size();
-  if (lot.batches.size() > 1) out.push_back(batches_text(q));
-  if (out.size() < columns) out.push_back(limit_cell(q));
+Table quantities_table(const FleetLot& lot, std::optional<bool> of_kind) {
+  Table out("group|what|mean|spread (sd)|95 % of devices|counted|not counted|batches alike|limit");
+  for (const QuantityLot& q : lot.quantities) {
+    if (of_kind && q.of_kind != *of_kind) continue;
+    const auto spread = [&](const LotFigures& f) {
+      return spread_text(f.spread, f.spread_ci95, in_logarithm(q.quantity), q.unit);
+    };
+    out.add({group_title(q, lot),
+             title_of(q.quantity),
+             mean_text(q.figures, q.unit) + off_text(q),
+             q.figures ? spread(*q.figures) : "–",
+             devices_text(q),
+             counted_text(q.counts),
+             not_counted(q.counts),
+             batches_text(q),
+             limit_cell(q)});
+  }
   return out;
 }
 
@@ -382,10 +368,8 @@ std::string allan_figures(const FleetReport& report) {
       add_curve(report, r, c, figures);
   std::string out;
   for (const AllanFigure& f : figures) {
-    const std::string drawing = svg_curves(f.curves,
-                                           {"averaging time τ, s",
-                                            f.deviation + ", " + f.unit,
-                                            "Allan curves of all channels, " + f.measures});
+    const std::string drawing = curves_figure(
+        f.curves, f.deviation + ", " + f.unit, "Allan curves of all channels, " + f.measures);
     if (!drawing.empty()) out += "<h3>" + html_text(f.measures) + "</h3>\n" + drawing;
   }
   return out;
@@ -396,7 +380,7 @@ std::string quantity_figures(const FleetReport& report, const QuantityLot& q) {
   if (q.counts.counted < kFewestDrawn) return "";
   const std::string title = title_of(q.quantity) + " of " + group_title(q, *report.lot);
   std::string out = "<h3>" + html_text(title) + "</h3>\n<div class=\"plots\">\n" +
-                    svg_histogram(q.histogram, axis_of(q), "Histogram: " + title);
+                    histogram_figure(q.histogram, axis_of(q), "Histogram: " + title);
   if (q.chart) out += chart_of(report, q, "Control chart: " + title);
   return out + "</div>\n" + sentences(q) + slope_table(q, report.records) + batch_table(q);
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/table/table.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 
 namespace libchar {
@@ -14,10 +15,9 @@ std::string group_title(const QuantityLot& quantity, const FleetLot& lot);
 /// "22.5 °C", to a tenth of a degree.
 std::string celsius_text(double t);
 
-/// Heads and texts of a row: group, what, mean, spread, where 95 % lie, counted, not counted,
-/// batches, limit.
-std::vector<std::string> quantity_heads(const FleetLot& lot, bool of_kind);
-std::vector<std::string> quantity_cells(const QuantityLot& quantity, const FleetLot& lot);
+/// Group, what, mean, spread, where 95 % lie, counted, not counted, batches, limit: of channels, of
+/// kinds of them, of both.
+Table quantities_table(const FleetLot& lot, std::optional<bool> of_kind = {});
 
 /// The Allan curves of all channels, a drawing for each quantity that they measure; "" where the
 /// recordings are not in memory.

@@ -1,6 +1,7 @@
 #include "libchar/report/detail/html/html_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -8,6 +9,7 @@
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shell_word.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
@@ -69,17 +71,7 @@ std::string head(const PageParts& parts, const std::string& script) {
 
 std::string command_line(const std::vector<std::string>& command) {
   std::string out;
-  for (const std::string& word : command) {
-    const bool plain =
-        !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;!#~") == std::string::npos;
-    std::string quoted = word;
-    if (!plain) {
-      for (std::size_t at = 0; (at = quoted.find('\'', at)) != std::string::npos; at += 4)
-        quoted.replace(at, 1, "'\\''");
-      quoted = "'" + quoted + "'";
-    }
-    out += (out.empty() ? "" : " ") + quoted;
-  }
+  for (const std::string& word : command) out += (out.empty() ? "" : " ") + shell_word(word);
   return out;
 }
 
@@ -96,16 +88,35 @@ std::string settings_details(const Json& document) {
   return out + "</pre>\n</details>\n";
 }
 
+Cell digest_cell(const LogInfo& log) {
+  Cell out(log.sha256.empty() ? "not computed" : log.sha256);
+  out.code = true;
+  return out;
+}
+
+void add_input_file(Table& facts, const LogInfo& log) {
+  facts.add({"File", log.file});
+  facts.add({"Format", log.format});
+  facts.add({"Size", count_text(log.bytes) + " bytes, " + count_text(log.rows) + " rows"});
+  facts.add({"SHA-256", digest_cell(log)});
+}
+
+void add_program(Table& facts, const std::vector<std::string>& command) {
+  facts.add({"Tool", "sensorchar " + std::string(version())});
+  Cell line(command_line(command));
+  line.code = true;
+  facts.add({"Command", line});
+}
+
 std::string warnings_part(const Warnings& warnings) {
-  std::string out = "<h3>Repairs and warnings</h3>\n";
-  if (warnings.empty()) return out + "<p>None.</p>\n";
-  out += "<div class=\"wide\"><table>\n" + table_head({"Kind", "What", "Count", "First places"});
-  for (const Warning& w : warnings.list()) {
-    std::string places;
-    for (const std::string& place : w.places) places += (places.empty() ? "" : ", ") + place;
-    out += table_row({w.code, w.message, count_text(w.count), places});
-  }
-  return out + "</tbody></table></div>\n";
+  Table out("kind|what|count|first places");
+  out.title = "Repairs and warnings";
+  for (const Warning& w : warnings.list())
+    out.add({w.code,
+             w.sentence,
+             count_text(w.count),
+             fmt::format("{}", fmt::join(w.where.rows, ", "))});
+  return out.rows.empty() ? "<h3>" + out.title + "</h3>\n<p>None.</p>\n" : html_table(out);
 }
 
 std::string html_page(const PageParts& parts, const std::string& body, const std::string& data) {

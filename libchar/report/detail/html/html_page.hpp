@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "libchar/core/document/json.hpp"
+#include "libchar/core/table/table.hpp"
 #include "libchar/core/warnings.hpp"
+#include "libchar/log/recording.hpp"
 
 namespace libchar {
 
@@ -29,6 +31,10 @@ std::string html_page(const PageParts& parts, const std::string& body, const std
 std::string command_line(const std::vector<std::string>& command);
 /// <details> with a document, "" when there is none.
 std::string settings_details(const Json& document);
+/// Rows of a table of facts: file, format, size and digest of an input; program and command.
+void add_input_file(Table& facts, const LogInfo& log);
+void add_program(Table& facts, const std::vector<std::string>& command);
+Cell digest_cell(const LogInfo& log);
 /// "Repairs and warnings": a table by kind, or "None."
 std::string warnings_part(const Warnings& warnings);
 

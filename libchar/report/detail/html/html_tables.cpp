@@ -1,40 +1,128 @@
 #include "libchar/report/detail/html/html_tables.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "libchar/core/text/term_cells.hpp"
+#include <algorithm>
+
+#include "libchar/core/text/csv_cell.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/report/detail/escape.hpp"
 
 namespace libchar {
+namespace {
 
-std::string table_row(const std::vector<std::string>& cells) {
-  std::string out = "<tr>";
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    out += i == 0 ? "<th scope=\"row\">" + html_text(cells[i]) + "</th>"
-                  : "<td>" + html_text(cells[i]) + "</td>";
+bool is_small(char c) {
+  return c >= 'a' && c <= 'z';
+}
+
+/// "term" as "Term"; symbols ("p") stay as they are.
+std::string capital(std::string head) {
+  if (head.size() > 1 && is_small(head[0]) && (is_small(head[1]) || head[1] == ' '))
+    head[0] = static_cast<char>(head[0] - 'a' + 'A');
+  return head;
+}
+
+std::string linked(const Cell& cell) {
+  const std::string text = html_text(cell.text);
+  if (!cell.anchor.empty())
+    return fmt::format("<a href=\"#{}\">{}</a>", html_attribute(cell.anchor), text);
+  if (!cell.address.empty())
+    return fmt::format("<a href=\"{}\">{}</a>", html_address(cell.address), text);
+  return text;
+}
+
+std::string cell_content(const Cell& cell) {
+  std::string out = cell.tint && !cell.is_number ? html_chip(cell.text, cell.tint) : linked(cell);
+  if (!cell.unit.empty()) out += " <span class=\"dim\">" + html_text(cell.unit) + "</span>";
+  for (const Cell::Mark& mark : cell.marks) out += " " + html_chip(mark.text, mark.tint);
+  const std::string interval =
+      cell.high.empty() ? cell.low : fmt::format("[{}, {}]", cell.low, cell.high);
+  if (!interval.empty()) out += "<span class=\"ci\">" + html_text(interval) + "</span>";
+  for (const std::string& note : cell.notes)
+    out += "<span class=\"ci dim\">" + html_text(note) + "</span>";
+  for (const Cell& line : cell.lines) out += "<div>" + cell_content(line) + "</div>";
+  return out;
+}
+
+std::string html_cell(const Cell& cell,
+                      const Table::Column& column,
+                      std::size_t span,
+                      PageTable look) {
+  std::vector<const char*> css;
+  if (cell.is_number) css.push_back("n");
+  if (column.folded) css.push_back("more");
+  if (cell.is_number && cell.tint == Tint::absent) css.push_back("limit");
+  if (cell.code) css.push_back("hash");
+  std::string out = "<td";
+  if (!css.empty()) out += fmt::format(" class=\"{}\"", fmt::join(css, " "));
+  if (span > 1) out += fmt::format(" colspan=\"{}\"", span);
+  if (look.sorted) out += fmt::format(" data-value=\"{}\"", csv_cell(cell.value));
+  if (look.cards && span == 1)
+    out += " data-label=\"" + html_attribute(capital(column.head)) + "\"";
+  return out + ">" + cell_content(cell) + "</td>";
+}
+
+/// The columns that the page shows.
+using Shown = std::vector<std::size_t>;
+
+std::string html_row(const Table& table, const Shown& shown, std::size_t r, PageTable look) {
+  const Table::Row& row = table.rows[r];
+  if (row.kind == Table::Kind::part)
+    return fmt::format("</tbody>\n<tbody class=\"bounds\">\n<tr><th colspan=\"{}\">{}</th></tr>\n",
+                       shown.size(),
+                       html_text(row.cells[0].text));
+  constexpr const char* kKinds[] = {
+      "<tr>", "<tr class=\"best\">", "<tr class=\"bound\">", "<tr class=\"derived\">"};
+  std::string out = kKinds[static_cast<std::size_t>(row.kind)];
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const Cell& cell = table.cell(r, shown[i]);
+    const bool wide = row.kind == Table::Kind::derived && shown[i] + 1 == row.cells.size();
+    const std::size_t span = wide ? shown.size() - i : 1;
+    PageTable here = look;
+    here.sorted = look.sorted && table.holds_numbers(shown[i]);
+    out += i == 0 ? "<th scope=\"row\">" + cell_content(cell) + "</th>"
+                  : html_cell(cell, table.columns[shown[i]], span, here);
+    i += span - 1;
   }
   return out + "</tr>\n";
 }
 
-std::string table_head(const std::vector<std::string>& cells) {
+std::string html_head(const Table& table, const Shown& shown) {
   std::string out = "<thead><tr>";
-  for (const std::string& cell : cells) out += "<th scope=\"col\">" + html_text(cell) + "</th>";
-  return out + "</tr></thead>\n<tbody>\n";
+  bool any = false;
+  for (const std::size_t c : shown) {
+    const Table::Column& column = table.columns[c];
+    any = any || !column.head.empty();
+    out +=
+        fmt::format("<th scope=\"col\"{}{}>{}</th>",
+                    column.folded ? " class=\"more\"" : "",
+                    column.about.empty() ? "" : " title=\"" + html_attribute(column.about) + "\"",
+                    html_text(capital(column.head)));
+  }
+  return any ? out + "</tr></thead>\n" : "";
 }
 
-std::string card_cell(std::string_view label, const std::string& html, std::string_view css_class) {
-  return fmt::format("<td{}{}{} data-label=\"{}\">{}</td>",
-                     css_class.empty() ? "" : " class=\"",
-                     css_class,
-                     css_class.empty() ? "" : "\"",
-                     html_attribute(label),
-                     html);
-}
+}  // namespace
 
-std::string interval_span(const ShownValue& shown) {
-  return shown.low.empty()
-             ? ""
-             : "<span class=\"ci\">" + html_text(interval_brackets(shown)) + "</span>";
+std::string html_table(const Table& table, const PageTable& look) {
+  Shown shown;
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if ((table.columns[c].doors & Table::kPage) != 0 && table.says_anything(c)) shown.push_back(c);
+  const std::size_t count = table.rows.size();
+  const std::size_t rows = look.most > 0 ? std::min(look.most, count) : count;
+  std::string out = table.title.empty() ? "" : "<h3>" + html_text(table.title) + "</h3>\n";
+  out += "<div class=\"wide\"><table" +
+         (*look.css == 0 ? "" : fmt::format(" class=\"{}\"", look.css)) + ">\n" +
+         html_head(table, shown) + "<tbody>\n";
+  for (std::size_t r = 0; r < rows; ++r) out += html_row(table, shown, r, look);
+  out += "</tbody></table></div>\n";
+  if (rows < count)
+    out += fmt::format("<p class=\"note\">The first {} of {}; all stand in {}.</p>\n",
+                       rows,
+                       count_text(count),
+                       look.rest);
+  return table.note.empty() ? out : out + "<p class=\"note\">" + html_text(table.note) + "</p>\n";
 }
 
 std::string folded(const std::string& summary, const std::string& body, bool open) {
@@ -42,10 +130,47 @@ std::string folded(const std::string& summary, const std::string& body, bool ope
       "<details{}><summary>{}</summary>\n{}</details>\n", open ? " open" : "", summary, body);
 }
 
+std::string html_chip(std::string_view word, std::optional<Tint> tint) {
+  constexpr const char* kTints[] = {" detected", " unsure", " alarm", " absent"};
+  return fmt::format("<span class=\"chip{}\">{}</span>",
+                     tint ? kTints[static_cast<std::size_t>(*tint)] : "",
+                     html_text(word));
+}
+
+std::string_view rating_sign(Rating rating) {
+  return rating == Rating::good ? "✓" : rating == Rating::caution ? "!" : "✗";
+}
+
 std::string rating_badge(Rating rating) {
-  const char* sign = rating == Rating::good ? "✓" : rating == Rating::caution ? "!" : "✗";
-  return fmt::format(
-      "<span class=\"badge {}\">{} {}</span>", name_of(rating), sign, rating_word(rating));
+  return fmt::format("<span class=\"badge {}\">{} {}</span>",
+                     name_of(rating),
+                     rating_sign(rating),
+                     rating_word(rating));
+}
+
+namespace {
+
+std::string finding_item(const Finding& one) {
+  std::string out = fmt::format("<li class=\"{}\" title=\"{}\">", name_of(one.severity), one.code) +
+                    html_text(one.sentence);
+  for (const Finding::Help& help : one.help)
+    out += " <span class=\"help\">" + html_text(help.sentence) + "</span>";
+  return out + "</li>\n";
+}
+
+}  // namespace
+
+std::string findings_list(const std::vector<Finding>& findings) {
+  constexpr std::size_t kShown = 5;
+  std::string shown, rest;
+  for (std::size_t i = 0; i < findings.size(); ++i)
+    (i < kShown ? shown : rest) += finding_item(findings[i]);
+  if (shown.empty()) return "";
+  const auto list = [](const std::string& items) {
+    return "<ul class=\"findings\">\n" + items + "</ul>\n";
+  };
+  return list(shown) +
+         (rest.empty() ? "" : folded(fmt::format("{} more", findings.size() - kShown), list(rest)));
 }
 
 std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {

@@ -8,33 +8,17 @@
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/document/json.hpp"
 #include "libchar/lot/device_record.hpp"
-#include "libchar/report/detail/svg/svg_curves.hpp"
+#include "libchar/report/detail/tables/coefficients.hpp"
 
 namespace libchar {
 
-/// The coefficients of a channel for a table: white noise, bias instability, random walk, goodness of fit.
-std::vector<std::string> coefficient_cells(const Channel& channel, const NoiseFit& fit);
-/// Heads of those cells.
-std::vector<std::string> coefficient_heads();
+/// A table of channels, its first column the name of what they are recorded in.
+Table channels_table(const char* recordings);
+/// A row a channel.
+void add_channels(Table& table, const DeviceRecord& record, const std::string& name);
 
-struct ChannelRow {
-  std::string recording,
-      report;  ///< what it is called, and the folder of its own page, relative to this one ("": none)
-  std::string channel;
-  std::vector<std::string> cells;  ///< under coefficient_heads
-};
-
-/// One row per channel.
-std::vector<ChannelRow> channel_rows(const DeviceRecord& record, const std::string& name);
-
-/// The name, with a link to the page in that folder where there is one.
-std::string report_link(const std::string& name, const std::string& folder);
-
-/// `recordings`: the head of their names.
-std::string channels_table(const std::string& recordings, const std::vector<ChannelRow>& rows);
-
-/// The points of the curve that can be relied on, times a factor.
-SvgCurve allan_svg(const AllanCurve& allan, double factor = 1);
+/// The name, with a link to the page in that folder, relative to this one ("": none).
+Cell report_cell(const std::string& name, const std::string& folder);
 
 /// Input files with their hashes, where they are in memory; the command.
 std::string many_provenance(std::span<const Characterization> recordings,

@@ -8,8 +8,8 @@
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_plots.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/html/replay_tables.hpp"
 #include "libchar/report/detail/replay_words.hpp"
+#include "libchar/report/detail/tables/replay_tables.hpp"
 
 namespace libchar {
 namespace {

@@ -1,0 +1,17 @@
+#pragma once
+// Which axis of a triad a channel is, by its name.
+
+#include <string>
+#include <string_view>
+
+namespace libchar {
+
+struct AxisName {
+  char axis = 0;      ///< 'x', 'y' or 'z'; 0: the name says none
+  std::string front;  ///< the name in lower case without unit, marks at its end and that letter
+};
+
+/// "gyr_x", "ax", "Gyro Y [deg/s]", "wz": a letter behind a mark, or behind a word of the field.
+AxisName axis_name(std::string_view channel);
+
+}  // namespace libchar

@@ -1,0 +1,103 @@
+#include "libchar/log/gravity.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "libchar/core/axis_name.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/units.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kGravity = 9.80665;  // m/s^2
+constexpr double kTolerance = 0.15;  // biases and scale errors of cheap sensors, and where on Earth
+constexpr double kAtRest = 0.05;     // g: standard deviation of all axes together
+
+using Triad = std::array<std::size_t, 3>;
+
+std::vector<Triad> triads_of(std::span<const Channel> channels) {
+  constexpr std::size_t kAbsent = SIZE_MAX;
+  std::map<std::pair<std::string, std::string>, Triad> found;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const auto unit = find_unit(channels[c].unit);
+    if (!unit || unit->quantity != Quantity::acceleration) continue;
+    const AxisName name = axis_name(channels[c].name);
+    if (name.axis == 0) continue;
+    auto& triad =
+        found.try_emplace({name.front, channels[c].unit}, Triad{kAbsent, kAbsent, kAbsent})
+            .first->second;
+    triad[static_cast<std::size_t>(name.axis - 'x')] = c;
+  }
+  std::vector<Triad> out;
+  for (const auto& [key, triad] : found)
+    if (triad[0] != kAbsent && triad[1] != kAbsent && triad[2] != kAbsent) out.push_back(triad);
+  return out;
+}
+
+bool is_near(double ratio, double wanted) {
+  return std::fabs(ratio / wanted - 1) < kTolerance;
+}
+
+/// What the length of the mean, in g, speaks for, and the factor that mends it; "" for the factor: none is known.
+struct Suspicion {
+  std::string says, factor;
+};
+
+Suspicion suspicion_of(double ratio) {
+  if (is_near(ratio, 1 / kGravity)) return {"this looks like g under the name of m/s²", "9.80665"};
+  if (is_near(ratio, kGravity)) return {"this looks like m/s² under the name of g", "1/9.80665"};
+  for (const auto& [wanted, name, factor] : {std::tuple{0.5, "half", "2"},
+                                             {2.0, "twice", "1/2"},
+                                             {0.25, "a quarter of", "4"},
+                                             {4.0, "four times", "1/4"}})
+    if (is_near(ratio, wanted)) return {fmt::format("this looks like {} the scale", name), factor};
+  if (ratio < kTolerance) return {"gravity was taken out, or the sensor does not rest", ""};
+  return {"unit or scale are another, or the sensor does not rest", ""};
+}
+
+}  // namespace
+
+void judge_gravity(std::span<const Channel> channels,
+                   const std::function<ChannelQuality&(std::size_t)>& quality) {
+  for (const Triad& triad : triads_of(channels)) {
+    const std::string& unit = channels[triad[0]].unit;
+    const double in_g = find_unit(unit)->to_si / kGravity;
+    double mean = 0, scatter = 0;
+    for (const std::size_t c : triad) {
+      mean += std::pow(quality(c).mean * in_g, 2);
+      scatter += std::pow(quality(c).standard_deviation * in_g, 2);
+    }
+    const double ratio = std::sqrt(mean);
+    if (!(std::sqrt(scatter) < kAtRest) || !std::isfinite(ratio) || is_near(ratio, 1)) continue;
+    const Suspicion suspicion = suspicion_of(ratio);
+    Finding found = finding(
+        "not_gravity",
+        fmt::format("The mean acceleration of the three axes is {} {}, and a sensor at rest reads "
+                    "{}: {}.",
+                    brief_text(ratio / in_g, 4),
+                    unit,
+                    brief_text(1 / in_g, 4),
+                    suspicion.says),
+        fmt::format("the mean acceleration is {} {}: {}",
+                    brief_text(ratio / in_g, 4),
+                    unit,
+                    suspicion.says));
+    if (ratio < kTolerance && suspicion.factor.empty()) found.severity = Severity::caution;
+    if (!suspicion.factor.empty()) {
+      Finding::Help help{"Scale the axes."};
+      for (const std::size_t c : triad)
+        help.options.push_back({"channel_scale", channels[c].name + "=" + suspicion.factor});
+      found.help.push_back(std::move(help));
+      found.effects = {
+          {Affected::scale, ratio < 1 ? Direction::too_small : Direction::too_large, ratio}};
+    }
+    for (const std::size_t c : triad) quality(c).findings.push_back(found);
+  }
+}
+
+}  // namespace libchar

@@ -1,0 +1,161 @@
+// What the grid learns of its first rows, and of those at the beginning of a window: which are its own,
+// and the model of their stamps.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/log/time/grid.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kLearn = 1025;  // rows whose stamps decide on dt
+
+}  // namespace
+
+void TimeGrid::leave_out_blank(Pending& item) {
+  if (item.own) return;
+  item.own = true;
+  const std::size_t blank = leave_out_blank_rows(item.block);
+  counts_.dropped += blank;
+  if (blank > 0)
+    warnings_.add("own_rows",
+                  "rows without a value of the channels that are read are left out: these have a "
+                  "clock of their own",
+                  "",
+                  blank);
+}
+
+/// Enough rows are there to learn from.
+bool TimeGrid::ready(bool end) {
+  if (end && !own_rows_.decided()) {
+    own_rows_.decide_at_end();
+    waiting_ = 0;
+    for (Pending& waiting : pending_) {
+      if (own_rows_.apart()) leave_out_blank(waiting);
+      waiting_ += waiting.block.rows - waiting.done;
+    }
+  }
+  return own_rows_.decided() && waiting_ > 0 && (end || waiting_ >= kLearn);
+}
+
+/// Of the rows that wait, as far as the window goes.
+std::vector<std::int64_t> TimeGrid::first_stamps() {
+  std::vector<std::int64_t> stamps;
+  for (const Pending& item : pending_)
+    for (std::size_t i = item.done; i < item.block.rows && stamps.size() < kLearn; ++i) {
+      const std::int64_t stamp = checked(item, i, item.block.time_ns[i]);
+      const std::int64_t first = last_.any        ? last_.first - last_.wrap
+                                 : stamps.empty() ? stamp
+                                                  : stamps.front();
+      if (stamps.size() > 1 && window_.to_ns != INT64_MAX && stamp - first >= window_.to_ns)
+        return stamps;
+      stamps.push_back(stamp);
+    }
+  return stamps;
+}
+
+void TimeGrid::drop_wild_start(const std::vector<std::int64_t>& stamps) {
+  for (std::size_t left = wild_start(stamps, source_.info().time); left > 0; --left) {
+    while (pending_.front().done == pending_.front().block.rows) pending_.pop_front();
+    drop_wild(pending_.front(), pending_.front().done);
+    ++pending_.front().done;
+    ++counts_.dropped;
+    --waiting_;
+  }
+  while (pending_.front().done == pending_.front().block.rows) pending_.pop_front();
+}
+
+void TimeGrid::refuse_without_axis(const std::vector<std::int64_t>& stamps) {
+  const Pending* item = &pending_.front();
+  std::size_t row = item->done + 1;
+  if (row >= item->block.rows) {
+    item = &pending_[1];
+    row = 0;
+  }
+  const bool equal =
+      std::all_of(stamps.begin(), stamps.end(), [&](std::int64_t s) { return s == stamps[0]; });
+  fail(*item,
+       row,
+       "E0315",
+       equal ? "no time axis: all stamps are equal" : "no time axis: the stamps never rise",
+       "`time_column` none and `rate_hz` HZ ignore the stamps");
+}
+
+// At the first row, and at the first one of a window that begins later: in front of it the rate may
+// be another.
+void TimeGrid::learn() {
+  learned_ = true;
+  if (!last_.any) drop_wild_start(first_stamps());
+  const std::vector<std::int64_t> stamps = first_stamps();
+  const StampModel found = model_of_stamps(stamps, options_.rate_hz);
+  const bool coarse = found.pattern != StampPattern::steps;
+  const bool begins = window_.from_ns <= 0 || last_.any;
+  if (!last_.any || (found.ns > 0 && std::fabs(found.ns - step_.ns) > 0.01 * step_.ns)) {
+    step_ = {found.ns, static_cast<std::int64_t>(std::min(found.longest_step, 9e18)), 1, coarse};
+    const auto whole = static_cast<std::int64_t>(std::min(step_.ns, 9e18));
+    step_.shortest =
+        std::max<std::int64_t>(1, whole - whole / 4);  // three quarters of it, rounded up
+  }
+  sketch_ = {};
+  watch_ = {};
+  if (step_.ns == 0 && stamps.size() > 1) refuse_without_axis(stamps);
+  if (!begins) return;
+  window_.begun = true;
+  say_pattern(found);
+  begin();
+}
+
+void TimeGrid::say_pattern(const StampModel& found) {
+  const double step_hz = 1e9 / found.step_ns, span_hz = 1e9 / found.span_ns;
+  switch (found.pattern) {
+    case StampPattern::steps:
+      return;
+    case StampPattern::equal:
+      warnings_.add("coarse_stamps",
+                    "the clock is too coarse to tell rows apart (many equal stamps): rows are kept "
+                    "and spaced evenly");
+      return;
+    case StampPattern::coarse:
+      warnings_.add("coarse_stamps",
+                    fmt::format("the stamps are rounded to a coarse clock and keep to one line at "
+                                "{} Hz: rows are spaced evenly (`rate_hz` {} takes the "
+                                "longer steps as gaps)",
+                                brief_text(span_hz, 5),
+                                shortest(rounded(step_hz, 5))));
+      return;
+    case StampPattern::packets:
+      warnings_.add("packets",
+                    fmt::format("the stamps are those of packets: rows are spaced evenly at "
+                                "{} Hz, rows over time (`rate_hz` {}, the rate inside a "
+                                "packet, takes the rest as gaps)",
+                                brief_text(span_hz, 5),
+                                shortest(rounded(step_hz, 5))));
+      return;
+    case StampPattern::uneven:
+      warnings_.add("uneven_stamps",
+                    fmt::format("the stamps take turns in steps of unlike length and keep to one "
+                                "line: rows are spaced evenly at {} Hz, rows over time (`rate_hz` "
+                                "{}, the rate of the shorter steps, takes the rest as gaps)",
+                                brief_text(span_hz, 5),
+                                shortest(rounded(step_hz, 5))));
+      return;
+    case StampPattern::disputed:
+      fail(pending_.front(),
+           0,
+           "E0324",
+           fmt::format("two sampling rates: most stamps follow each other at {} Hz, rows over "
+                       "time give {} Hz, and gaps do not explain it",
+                       brief_text(step_hz, 5),
+                       brief_text(span_hz, 5)),
+           fmt::format("`rate_hz` {} or `rate_hz` {} decides",
+                       shortest(rounded(step_hz, 5)),
+                       shortest(rounded(span_hz, 5))));
+  }
+}
+
+}  // namespace libchar

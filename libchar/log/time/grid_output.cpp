@@ -1,0 +1,61 @@
+#include "libchar/log/time/grid_output.hpp"
+
+#include <algorithm>
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kStaging = 8192;  // rows assembled where the grid is irregular
+
+}  // namespace
+
+void GridOutput::begin(const LogInfo& so_far) {
+  staging_.resize(so_far.channels.size());
+  sink_.begin(so_far);
+}
+
+void GridOutput::rows(const RowBlock& block, std::size_t from, std::size_t to) {
+  if (from >= to) return;
+  const std::size_t rows = to - from;
+  if (rows >= 1024) {
+    flush();
+    std::vector<const double*> channels;
+    for (const auto& column : block.columns) channels.push_back(column.data() + from);
+    deliver(channels, rows);
+    return;
+  }
+  for (std::size_t c = 0; c < staging_.size(); ++c) {
+    staging_[c].resize(staged_);
+    staging_[c].insert(staging_[c].end(),
+                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(from),
+                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(to));
+  }
+  staged_ += rows;
+  if (staged_ >= kStaging) flush();
+}
+
+void GridOutput::missing(std::uint64_t count) {
+  while (count > 0) {
+    const std::size_t n = static_cast<std::size_t>(std::min<std::uint64_t>(count, kStaging));
+    staged_ += n;
+    for (auto& column : staging_) column.resize(staged_, kMissing);
+    if (staged_ >= kStaging) flush();
+    count -= n;
+  }
+}
+
+void GridOutput::flush() {
+  if (staged_ == 0) return;
+  std::vector<const double*> channels;
+  for (const auto& column : staging_) channels.push_back(column.data());
+  deliver(channels, staged_);
+  staged_ = 0;
+  for (auto& column : staging_) column.clear();
+}
+
+void GridOutput::deliver(const std::vector<const double*>& channels, std::size_t rows) {
+  sink_.block({delivered_, rows, channels});
+  delivered_ += rows;
+}
+
+}  // namespace libchar

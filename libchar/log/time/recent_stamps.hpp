@@ -1,0 +1,40 @@
+#pragma once
+// The last stamps of rows without a gap between them: where the grid stands, whatever the last one alone says.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libchar/core/numeric/median.hpp"
+
+namespace libchar {
+
+class RecentStamps {
+ public:
+  void push(std::int64_t stamp) {
+    stamps_[next_++ % kMost] = stamp;
+    size_ = std::min(size_ + 1, kMost);
+  }
+  void push(const std::int64_t* stamps, std::size_t n) {
+    for (std::size_t i = n - std::min(n, kMost); i < n; ++i) push(stamps[i]);
+  }
+  void clear() { size_ = 0; }
+  /// By the median of all of them, how far the last one stands behind its place on a grid of that interval, ns.
+  double last_late(double interval_ns) const {
+    const std::int64_t last = stamps_[(next_ - 1) % kMost];
+    std::vector<double> off;
+    for (std::size_t back = 0; back < size_; ++back)
+      off.push_back(static_cast<double>(last - stamps_[(next_ - 1 - back) % kMost]) -
+                    static_cast<double>(back) * interval_ns);
+    return off.empty() ? 0 : median_in_place(off, Middle::lower);
+  }
+
+ private:
+  static constexpr std::size_t kMost = 8;
+  std::array<std::int64_t, kMost> stamps_ = {};
+  std::size_t next_ = kMost, size_ = 0;
+};
+
+}  // namespace libchar

@@ -1,0 +1,409 @@
+// Steps far longer than nearly all others are pauses, which say nothing of a rate: what follows looks
+// at the stretches between them.
+//
+// 1. A change of rate: slopes of pieces of the log make two groups, one in front of the other. Then
+//    the longer part is the log's.
+// 2. Rows missing at random: all steps are whole multiples of the least one, and of 1, 2, 3… times
+//    it there are as many as where each row is missing with one probability p, (1 - p) p^(m-1). That
+//    lattice is the sampling, however many are missing.
+// 3. The common step (the median of the steps) begins a walk along the stamps, which takes those
+//    longer than 1.5 steps that no later row makes good as gaps; the mean of the other steps is the
+//    next interval, until it stays. Where gaps are few that is the interval.
+// 4. Where they are many, one of these explains it, or the log is refused:
+//      coarse   all steps are multiples of the clock's step q, and every stamp stands within a band
+//               of 1.5 q (2 q in longer logs) about one line: rounding moves a stamp by at most q,
+//               while rows missing at random lead away from every line like a random walk
+//      gaps     they are two or three steps long, exactly
+//      packets, uneven   the stamps keep to one line, in long pieces no further than in short ones:
+//               most steps are short again and again after at most 40 rows, or of unlike length
+//      gaps     most are near multiples of the common step
+#include "libchar/log/time/stamp_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/log/time/recent_stamps.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kSameRate = 0.02;
+constexpr std::size_t kLeastOdd = 8;   // steps that make a pattern
+constexpr double kLongestPacket = 40;  // rows
+constexpr double kPause = 3;           // times the longest of the usual steps
+constexpr std::size_t kAhead = 16;     // rows looked at before a long step is called a gap
+
+double middle_of(std::vector<double> values) {
+  return values.empty() ? 0 : median_in_place(values, Middle::lower);
+}
+
+double step_between(std::int64_t from, std::int64_t to) {
+  return static_cast<double>(to) - static_cast<double>(from);
+}
+
+/// The steps of the first stamps, pauses and steps back in time left out.
+struct FirstSteps {
+  std::vector<double> rising;
+  std::size_t equal = 0;
+  double pause = std::numeric_limits<double>::infinity();  ///< longer steps are pauses
+  double back = 0;                                         ///< beyond it steps back are no scatter
+  bool cut(double step) const { return step > pause || step < back; }
+  double mean = 0;
+  std::vector<double> line;  ///< where each stamp stands without pauses and steps back
+};
+
+FirstSteps steps_of(const std::vector<std::int64_t>& stamps) {
+  FirstSteps steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    if (const double step = step_between(stamps[i - 1], stamps[i]); step > 0)
+      steps.rising.push_back(step);
+  if (steps.rising.empty()) return steps;
+  std::vector<double> sorted = steps.rising;
+  std::sort(sorted.begin(), sorted.end());
+  const double usual = sorted[(sorted.size() - 1) * 40 / 41];
+  steps.pause = kPause * usual;
+  steps.back = -usual;
+  std::erase_if(steps.rising, [&](double step) { return step > steps.pause; });
+  double time = 0, count = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    const double step = step_between(stamps[i - 1], stamps[i]);
+    steps.equal += step == 0;
+    if (steps.cut(step)) continue;
+    time += step;
+    count += 1;
+  }
+  steps.mean = time / count;
+  steps.line.push_back(0);
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    const double step = step_between(stamps[i - 1], stamps[i]);
+    steps.line.push_back(steps.line.back() + (steps.cut(step) ? steps.mean : step));
+  }
+  return steps;
+}
+
+/// What most of the stamps say by themselves.
+struct CommonStep {
+  double ns = 0, deviation = 0, spread = 0;  ///< spread: of those within a tenth, in steps
+  bool tidy = false;                         ///< half of the steps lie within a tenth of it
+  bool equal = false;                        ///< a quarter of the stamps do not rise
+  double longest(double interval) const {
+    return std::max(1.5 * interval, deviation > 0.45 * interval ? interval + 3 * deviation : 0);
+  }
+};
+
+CommonStep common_step(const FirstSteps& steps) {
+  CommonStep result;
+  result.equal = steps.line.size() > 8 && steps.equal * 4 > steps.line.size();
+  result.ns = middle_of(steps.rising);
+  std::vector<double> scatter;
+  for (const double step : steps.rising) scatter.push_back(std::fabs(step - result.ns));
+  double sum = 0;
+  std::size_t close = 0;
+  for (const double step : steps.rising) {
+    if (std::fabs(step - result.ns) > 0.1 * result.ns) continue;
+    sum += step;
+    ++close;
+  }
+  result.tidy = close * 2 >= steps.rising.size();
+  const double deviation = kMadToSd * middle_of(std::move(scatter));
+  result.deviation = result.tidy ? 0 : deviation;
+  result.spread = deviation / result.ns;
+  if (!result.equal) {
+    if (result.tidy) result.ns = sum / static_cast<double>(close);
+    return result;
+  }
+  std::vector<double> slopes;
+  const std::size_t half = steps.line.size() / 2;
+  for (std::size_t i = 0; i + half < steps.line.size(); ++i)
+    slopes.push_back((steps.line[i + half] - steps.line[i]) / static_cast<double>(half));
+  if (const double slope = middle_of(std::move(slopes)); slope > 0) result.ns = slope;
+  return result;
+}
+
+/// Along the stamps on a grid of one interval.
+struct Walk {
+  double time = 0, rows = 0;  ///< of the steps that are neither gaps nor pauses
+  std::vector<double> gaps;   ///< steps, in intervals
+};
+
+Walk walk(const std::vector<std::int64_t>& stamps,
+          const FirstSteps& steps,
+          double ns,
+          double longest) {
+  Walk out;
+  RecentStamps recent;
+  recent.push(stamps[0]);
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    const double step = step_between(stamps[i - 1], stamps[i]);
+    if (step == 0) continue;
+    bool cut = steps.cut(step);
+    if (!cut && step > longest) {
+      const double late = recent.last_late(ns);
+      std::vector<double> lags;
+      for (std::size_t j = 0; j < kAhead && i + j < stamps.size(); ++j)
+        lags.push_back((step_between(stamps[i - 1], stamps[i + j]) + late) / ns -
+                       static_cast<double>(j + 1));
+      cut = common_lag(std::move(lags)) > 0;
+      if (cut) out.gaps.push_back(step / ns);
+    }
+    if (cut) recent.clear();
+    recent.push(stamps[i]);
+    if (cut) continue;
+    out.time += step;
+    out.rows += 1;
+  }
+  return out;
+}
+
+bool same_rate(double a, double b) {
+  return std::fabs(a - b) <= kSameRate * std::max(a, b);
+}
+
+bool multiple_of(double value, double unit, double tolerance) {
+  return std::fabs(value / unit - std::round(value / unit)) <= tolerance;
+}
+
+/// The clock's own step: the least difference between stamps, or between the steps themselves.
+double tick_of(std::vector<double> steps) {
+  std::sort(steps.begin(), steps.end());
+  double tick = steps.front();
+  for (std::size_t i = 1; i < steps.size(); ++i)
+    if (steps[i] > steps[i - 1]) tick = std::min(tick, steps[i] - steps[i - 1]);
+  return tick;
+}
+
+/// Steps on a lattice with rows missing at random: its interval, or 0. Few missing rows need no such care.
+double lattice_of(const FirstSteps& steps) {
+  constexpr double kFewest = 100, kOff = 0.2, kLeastMissing = 0.15, kMostMissing = 0.9;
+  const auto count = static_cast<double>(steps.rising.size());
+  if (count < kFewest || steps.equal > 0) return 0;
+  std::vector<double> sorted = steps.rising;
+  std::sort(sorted.begin(), sorted.end());
+  double interval = sorted[sorted.size() / 10];
+  std::erase_if(sorted, [&](double step) { return std::fabs(step - interval) > 0.3 * interval; });
+  interval = middle_of(std::move(sorted));
+  double time = 0, multiples = 0, once = 0, twice = 0, off = 0;
+  for (int i = 0; i < 3; ++i) {
+    time = multiples = once = twice = off = 0;
+    for (const double step : steps.rising) {
+      const double multiple = std::max(1.0, std::round(step / interval));
+      time += step;
+      multiples += multiple;
+      once += multiple == 1 ? 1 : 0;
+      twice += multiple == 2 ? 1 : 0;
+      const double rest = step / interval - multiple;
+      off += rest * rest;
+    }
+    interval = time / multiples;
+  }
+  const double missing = 1 - count / multiples;
+  if (missing < kLeastMissing || missing > kMostMissing || off > kOff * kOff * count) return 0;
+  const auto as_expected = [&](double found, double share) {
+    return std::fabs(found - count * share) <= 5 * std::sqrt(count * share) + 0.1 * count * share;
+  };
+  const bool at_random =
+      as_expected(once, 1 - missing) && as_expected(twice, (1 - missing) * missing);
+  return at_random ? interval : 0;
+}
+
+/// The line through places by least squares: ns a row, and how far they spread about it.
+struct StampLine {
+  double slope = 0, spread = 0;
+};
+
+StampLine line_through(std::span<const double> places) {
+  const double middle = 0.5 * static_cast<double>(places.size() - 1);
+  double sum_ky = 0, sum_kk = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double k = static_cast<double>(i) - middle;
+    sum_ky += k * (places[i] - places[0]);
+    sum_kk += k * k;
+  }
+  StampLine line{sum_ky / sum_kk, 0};
+  double low = 0, high = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double off = places[i] - places[0] - line.slope * static_cast<double>(i);
+    low = std::min(low, off);
+    high = std::max(high, off);
+  }
+  line.spread = high - low;
+  return line;
+}
+
+/// How far pieces of so many rows spread, each about its own line.
+double spread_of_pieces(std::span<const double> line, std::size_t rows) {
+  std::vector<double> spreads;
+  for (std::size_t i = 0; i + rows <= line.size(); i += rows / 2)
+    spreads.push_back(line_through(line.subspan(i, rows)).spread);
+  return middle_of(std::move(spreads));
+}
+
+/// A random walk spreads twice as far in four times the rows, what is late once no further.
+bool keeps_to_a_line(const FirstSteps& steps) {
+  constexpr std::size_t kLeast = 128;
+  const std::size_t n = steps.line.size();
+  if (n < kLeast) return false;
+  return spread_of_pieces(steps.line, n / 4) < 1.55 * spread_of_pieces(steps.line, n / 16);
+}
+
+bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) {
+  const double tick = tick_of(steps.rising);
+  std::size_t odd = steps.equal;
+  for (const double step : steps.rising) {
+    if (!multiple_of(step, tick, 1e-3)) return false;
+    odd += std::fabs(step - common) > 0.5 * tick;
+  }
+  return odd >= kLeastOdd && line.spread <= (odd >= 2 * kLeastOdd ? 2 : 1.5) * tick;
+}
+
+/// What explains that many steps are longer than the common one.
+StampPattern explanation(const FirstSteps& steps,
+                         const CommonStep& common,
+                         const std::vector<double>& gaps) {
+  const auto share = [&](const auto& holds) {
+    return static_cast<double>(std::count_if(gaps.begin(), gaps.end(), holds)) /
+           static_cast<double>(gaps.size());
+  };
+  const bool to_a_line = keeps_to_a_line(steps);
+  const double tick = tick_of(steps.rising);
+  const bool coarse = to_a_line && tick > 0.2 * common.ns &&
+                      std::all_of(steps.rising.begin(), steps.rising.end(), [&](double step) {
+                        return multiple_of(step, tick, 1e-3);
+                      });
+  const double near = std::min(0.25, 0.02 + 2.5 * common.spread);
+  if (!coarse && share([&](double gap) { return gap < 3.5 && multiple_of(gap, 1, near); }) > 0.9)
+    return StampPattern::steps;
+  const double rows_a_gap =
+      static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
+  const bool in_packets =
+      rows_a_gap <= kLongestPacket &&
+      (steps.mean > 2 * common.ns || (steps.mean > 1.2 * common.ns && rows_a_gap > 2.5));
+  if (to_a_line)
+    return in_packets ? StampPattern::packets
+           : coarse   ? StampPattern::coarse
+                      : StampPattern::uneven;
+  if (steps.mean > 2 * common.ns && in_packets) return StampPattern::packets;
+  if (!common.tidy) return StampPattern::steps;
+  // Of steps that are no multiples 40 % come as near to one by chance.
+  return share([](double gap) { return multiple_of(gap, 1, 0.2); }) > 0.55 ? StampPattern::steps
+                                                                           : StampPattern::disputed;
+}
+
+/// The model of stamps in which rows stand evenly, whatever their steps.
+StampModel evenly(const FirstSteps& steps,
+                  const CommonStep& common,
+                  StampPattern pattern,
+                  double slope,
+                  std::optional<double> rate_hz) {
+  StampModel out{common.ns, common.longest(common.ns), StampPattern::steps, common.ns, slope};
+  if (rate_hz && same_rate(1e9 / *rate_hz, common.ns)) return out;
+  const bool told = rate_hz && same_rate(1e9 / *rate_hz, slope);
+  out.pattern = pattern == StampPattern::disputed && told ? StampPattern::packets : pattern;
+  if (out.pattern == StampPattern::disputed) return out;
+  out.ns = slope;
+  std::vector<double> longer = steps.rising;
+  std::sort(longer.begin(), longer.end());
+  const bool coarse = pattern == StampPattern::coarse;
+  const double usual = coarse ? longer.back() : 1.6 * longer[longer.size() * 98 / 100];
+  out.longest_step = std::max(1.5 * out.ns, 1.25 * usual);
+  // Two steps on either side of the rate, none of them a gap: nothing that needs a word.
+  if (coarse && steps.equal == 0 && longer.back() <= 1.5 * common.ns)
+    out.pattern = StampPattern::steps;
+  return out;
+}
+
+StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps,
+                             const FirstSteps& steps,
+                             std::optional<double> rate_hz) {
+  const CommonStep common = common_step(steps);
+  StampModel out{common.ns,
+                 common.longest(common.ns),
+                 common.equal ? StampPattern::equal : StampPattern::steps,
+                 common.ns,
+                 steps.mean};
+  Walk found;
+  for (int i = 0; i < 8 && !common.equal; ++i) {
+    found = walk(stamps, steps, out.ns, common.longest(out.ns));
+    const double before = out.ns;
+    if (found.rows > 0) out.ns = found.time / found.rows;
+    out.longest_step = common.longest(out.ns);
+    if (std::fabs(out.ns - before) <= 1e-9 * before) break;
+  }
+  if (stamps.size() <= kLeastOdd) return out;
+  const StampLine line = line_through(steps.line);
+  const double lattice = lattice_of(steps);
+  if (lattice > 0 && (!rate_hz || same_rate(1e9 / *rate_hz, lattice)) &&
+      !on_one_line(line, steps, lattice))
+    return {lattice, 1.5 * lattice, StampPattern::steps, lattice, lattice};
+  const bool often = found.gaps.size() >= kLeastOdd && found.gaps.size() * 50 > steps.line.size();
+  const bool equal_at_times = steps.equal * 50 > stamps.size();
+  if (!often && !equal_at_times && !common.equal) return out;
+  if (on_one_line(line, steps, common.ns))
+    return evenly(steps, common, StampPattern::coarse, line.slope, rate_hz);
+  if (!often && !common.equal && !common.tidy)
+    out.pattern = StampPattern::equal;  // stamps that scatter by more than a step
+  if (!often || common.equal) return out;
+  const StampPattern pattern = explanation(steps, common, found.gaps);
+  return pattern == StampPattern::steps ? out : evenly(steps, common, pattern, line.slope, rate_hz);
+}
+
+}  // namespace
+
+StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz) {
+  const FirstSteps steps = steps_of(stamps);
+  if (steps.rising.empty()) return {};
+  std::vector<double> rows(stamps.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i);
+  const auto change = find_rate_change(rows, steps.line);
+  if (!change) return model_of_one_rate(stamps, steps, rate_hz);
+  const auto at = stamps.begin() + static_cast<std::ptrdiff_t>(change->row);
+  const bool later = 2 * change->row < static_cast<double>(stamps.size());
+  const std::vector<std::int64_t> part(later ? at + 1 : stamps.begin(), later ? stamps.end() : at);
+  return model_of_one_rate(part, steps_of(part), rate_hz);
+}
+
+std::optional<RateChange> find_rate_change(std::span<const double> rows,
+                                           std::span<const double> instants) {
+  constexpr std::size_t kMost = 32, kFewest = 8, kSide = 3, kRows = 16;
+  constexpr double kLeast = 0.03, kOff = 0.25;
+  const std::size_t n = rows.size(), pieces = std::min(kMost, n / kRows);
+  if (pieces < kFewest) return std::nullopt;
+  const auto edge = [&](std::size_t piece) { return std::min(n - 1, piece * n / pieces); };
+  const auto slope = [&](std::size_t from, std::size_t to) {
+    return (instants[edge(to)] - instants[edge(from)]) / (rows[edge(to)] - rows[edge(from)]);
+  };
+  const auto off = [&](std::size_t from, std::size_t to, double from_slope) {
+    double most = 0;
+    for (std::size_t i = from; i < to; ++i)
+      most = std::max(most, std::fabs(slope(i, i + 1) - from_slope));
+    return most;
+  };
+  std::optional<RateChange> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = kSide; k + 1 + kSide <= pieces; ++k) {  // piece k holds the change
+    const double before = slope(0, k), after = slope(k + 1, pieces);
+    const double apart = std::fabs(after - before);
+    const double most = std::max(off(0, k, before), off(k + 1, pieces, after));
+    if (!(apart > kLeast * std::min(before, after)) || most > kOff * apart || most / apart >= least)
+      continue;
+    least = most / apart;
+    const double row = (instants[edge(k + 1)] - after * rows[edge(k + 1)] -
+                        (instants[edge(0)] - before * rows[edge(0)])) /
+                       (before - after);
+    best = {std::clamp(row, rows[edge(k)], rows[edge(k + 1)]), before, after};
+  }
+  return best;
+}
+
+std::int64_t common_lag(std::vector<double> lags) {
+  const double own = lags.front();
+  const std::size_t quarter = lags.size() / 4;
+  std::nth_element(lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(quarter), lags.end());
+  // Of an interval far below a nanosecond there may be more steps than 64 bits count.
+  return static_cast<std::int64_t>(
+      std::llround(std::clamp(std::min(own, lags[quarter]), -9e18, 9e18)));
+}
+
+}  // namespace libchar

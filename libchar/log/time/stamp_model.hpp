@@ -1,0 +1,55 @@
+#pragma once
+// The model of a log's stamps, from the first of them:
+//
+//   stamp = instant of a clock (one interval, now and then a missing row or a pause)
+//         + what the way to the log adds (jitter, a delay, a coarse step, a packet)
+//
+// What it says decides which longer step is a gap. Steps back (rollovers, restarts) are the matter of
+// clock_breaks.hpp.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace libchar {
+
+/// How stamps and samples go together.
+enum class StampPattern {
+  steps,     ///< a stamp for each sample, as far as the clock can tell; longer steps are gaps
+  equal,     ///< so many equal stamps that the clock cannot tell rows apart
+  coarse,    ///< on the grid of a coarse clock, never more than a step off an even rate
+  packets,   ///< rows that arrive together have stamps of their arrival
+  uneven,    ///< steps of unlike length that keep to one line: messages that take turns
+  disputed,  ///< most steps say one rate, all of them together another, and gaps do not explain it
+};
+
+struct StampModel {
+  double ns = 0;            ///< sampling interval; what tells a gap from a step
+  double longest_step = 0;  ///< a longer one may be a gap, ns
+  StampPattern pattern = StampPattern::steps;
+  double step_ns = 0;  ///< the common step alone
+  double span_ns = 0;  ///< rows over time, pauses left out
+};
+
+/// From the first stamps, in file order. `rate_hz` decides where stamps can be read in two ways.
+StampModel model_of_stamps(const std::vector<std::int64_t>& stamps,
+                           std::optional<double> rate_hz = {});
+
+/// One interval up to a row, another one from there on.
+struct RateChange {
+  double row = 0;  ///< where the two lines meet
+  double before_ns = 0, after_ns = 0;
+};
+
+/// Where the instants of those rows change their rate for good by 3 % and more; nothing where they
+/// keep it, drift, or scatter by more than that.
+std::optional<RateChange> find_rate_change(std::span<const double> rows,
+                                           std::span<const double> instants);
+
+/// Rows that a row is late by, all of them together: a single late row whose followers are on time
+/// is no gap. `lags` starts with the row's own.
+std::int64_t common_lag(std::vector<double> lags);
+
+}  // namespace libchar

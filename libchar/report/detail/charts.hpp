@@ -1,0 +1,58 @@
+#pragma once
+// Drawings of a page: no script, the same on paper, of a size that does not grow with what is drawn.
+// Each is "<figure>…" with its caption; "" where there is nothing to draw.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/allan/allan_deviation.hpp"
+#include "libchar/benchmark/bench_view.hpp"
+#include "libchar/figure/figure.hpp"
+#include "libchar/lot/control_chart.hpp"
+#include "libchar/lot/histogram.hpp"
+
+namespace libchar {
+
+/// The points of the curve that can be relied on, times a factor; the k-th of many, told apart.
+FigureSeries allan_series(const AllanCurve& allan,
+                          std::size_t k,
+                          const std::string& name,
+                          bool strong,
+                          double factor = 1);
+
+/// Many curves on one pair of logarithmic axes: the legend has the first of them. `about`: for
+/// readers who cannot see it.
+std::string curves_figure(std::vector<FigureSeries> curves,
+                          const std::string& y_title,
+                          const std::string& about);
+
+/// Named points with intervals, and the front of those that nobody beats in both.
+std::string points_figure(const BenchChart& chart, const std::string& about);
+
+/// Values on an axis: of ln(value) where `logarithm`, else as they are.
+struct LotAxis {
+  bool logarithm = true;
+  std::string title;            ///< "bias instability, deg/s"
+  std::optional<double> mean;   ///< of the lot, as the values stand on the axis
+  std::optional<double> limit;  ///< of a data sheet
+};
+
+std::string histogram_figure(const Histogram& histogram,
+                             const LotAxis& axis,
+                             const std::string& about);
+
+/// Where another batch begins.
+struct ChartBound {
+  std::size_t index = 0;
+  std::string name;
+};
+/// `beyond`: names of the values outside of the limits.
+std::string control_figure(const ControlChart& chart,
+                           std::size_t values,
+                           const LotAxis& axis,
+                           const std::vector<std::string>& beyond,
+                           const std::vector<ChartBound>& bounds,
+                           const std::string& about);
+
+}  // namespace libchar

@@ -1,0 +1,31 @@
+#pragma once
+// Noise coefficients as tables.
+
+#include <string>
+
+#include "libchar/core/table/table.hpp"
+#include "libchar/fit/fit_result.hpp"
+#include "libchar/lot/device_record.hpp"
+
+namespace libchar {
+
+/// A row for each term that has something to say; `process`: those of a Gauss–Markov process, its
+/// standard deviation and correlation time.
+Table coefficients_table(const Coefficients& terms,
+                         const std::string& unit,
+                         const std::vector<Coefficient>& process = {});
+Table coefficients_table(const NoiseFit& fit, const std::string& unit);
+
+/// A clock's noise in its own words; no rows for any other channel.
+Table power_laws_table(const NoiseFit& fit);
+
+/// The coefficients that tell most, each in the unit of the field: N, B, K and how well they fit.
+inline constexpr const char* kHeadlines = "N, white noise|B, bias instability|K, random walk|fit";
+Cell headline_cell(const Coefficient& coefficient, Term term, const std::string& unit);
+std::vector<Cell> headline_cells(const Channel& channel, const NoiseFit& fit);
+std::vector<Cell> headline_cells(const RecordedChannel& channel);
+inline constexpr const char* kHeadlineNote =
+    "In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: not to be relied on, the "
+    "recording's own report says why.";
+
+}  // namespace libchar

@@ -1,0 +1,157 @@
+"""What is known travels: records with a fault of each kind through every verb. Each says the finding (inspect,
+characterize in text and JSON, allan, the model file, the page), exports refuse or say it, and the remedy that the
+terminal prints, pasted as it stands, makes it go and gives the right number.
+
+usage: findings_matrix.py PROGRAM
+"""
+import json
+import math
+import pathlib
+import random
+import re
+import shlex
+import struct
+import subprocess
+import sys
+import tempfile
+
+program = sys.argv[1]
+RATE, N = 100.0, 0.02  # Hz, U·√s
+draw = random.Random(20261126)
+SD = N * math.sqrt(RATE)
+
+
+def noise(n, sd=SD):
+    return [draw.gauss(0, sd) for _ in range(n)]
+
+
+def marks():
+    x = [round(v, 4) + 3 for v in noise(30000)]
+    for i in range(500, 30000, 400):
+        x[i] = -999.0
+    return {"gyro": ("deg/s", x)}
+
+
+def motion():
+    x = noise(30000)
+    for i in range(8000, 22000):
+        x[i] += 60 * math.sin(i / 9) * math.sin(i / 700)
+    return {"gyro": ("deg/s", x)}
+
+
+def gravity():
+    axes = {name: ("m/s^2", noise(30000, SD / 9.80665)) for name in ("acc_x", "acc_y", "acc_z")}
+    axes["acc_z"] = ("m/s^2", [v + 1 for v in axes["acc_z"][1]])
+    return axes
+
+
+def wraps():
+    phase, turn = [], 0.0
+    for v in noise(30000):
+        turn += 0.1 + v / RATE
+        phase.append(turn % 50.0)
+    return {"angle": ("deg", phase)}
+
+
+def frozen():
+    x = noise(30000)
+    for start in range(1000, 30000, 5000):
+        x[start:start + 300] = [x[start]] * 300
+    return {"gyro": ("deg/s", x)}
+
+
+def dead():
+    return {"gyro": ("deg/s", [0.0 if abs(v) < 1.5 * SD else v for v in noise(30000)])}
+
+
+def cut():
+    return {"gyro": ("deg/s", [max(-1.5 * SD, min(v, 1.5 * SD)) for v in noise(30000)])}
+
+
+# kind: record, code, options of the analysis, whether options mend it, whether it is bad, true N of the first channel
+KINDS = [
+    ("marks", marks, "missing_mark", [], True, True, N),
+    ("motion", motion, "motion", [], True, True, N),
+    ("gravity", gravity, "not_gravity", [], True, True, N),
+    ("wraps", wraps, "phase_wraps", ["--data", "phase"], True, True, N),
+    ("frozen", frozen, "stuck", [], True, False, N),
+    ("dead", dead, "dead_band", [], False, True, None),
+    ("cut", cut, "much_saturated", [], False, True, None),
+]
+faults = []
+
+
+def run(*arguments, code=(0,)):
+    ran = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    if ran.returncode not in code:
+        faults.append(f"{shlex.join(map(str, arguments))}: exit {ran.returncode}: {ran.stderr.strip()[-300:]}")
+    return ran
+
+
+def expect(holds, what):
+    if not holds:
+        faults.append(what)
+
+
+def codes(findings):
+    return [one["code"] for one in findings]
+
+
+with tempfile.TemporaryDirectory() as folder:
+    here = pathlib.Path(folder)
+    for kind, make, code, options, mends, bad, truth in KINDS:
+        channels = make()
+        log = here / f"{kind}.f64"
+        columns = [values for _, values in channels.values()]
+        log.write_bytes(b"".join(struct.pack(f"<{len(columns)}d", *row) for row in zip(*columns)))
+        (here / f"{kind}.f64.json").write_text(json.dumps({
+            "dtype": "f64", "endian": "little", "rate_hz": RATE,
+            "channels": [{"name": name, "unit": unit} for name, (unit, _) in channels.items()]}))
+        # inspect sees samples alone; what only the analysis sees is asked of that.
+        if code != "motion":
+            seen = json.loads(run("inspect", log, "--json").stdout)["recordings"][0]["channels"][0]["findings"]
+            expect(code in codes(seen), f"{kind}: inspect --json does not have {code}")
+        out = here / f"{kind}-report"
+        said = run("characterize", log, *options, "-o", out, code=(0, 4)).stdout
+        report = json.loads((out / "report.json").read_text())
+        found = [one for one in report["summary"]["channels"][0]["findings"] if one["code"] == code]
+        expect(found, f"{kind}: report.json does not have {code}")
+        if not found:
+            continue
+        expect((found[0]["severity"] == "bad") == bad, f"{kind}: {code} is {found[0]['severity']}")
+        first = found[0]["sentence"].split(":")[0][:40]
+        expect(first in said, f"{kind}: the terminal does not say {first!r}")
+        page = (out / "report.html").read_text()
+        expect(f'title="{code}"' in page, f"{kind}: the page does not have {code}")
+        model = next(iter(sorted(out.glob("*.sensor.yaml"))), None)
+        if model is not None:
+            expect(f'code: "{code}"' in model.read_text(), f"{kind}: the model file does not have {code}")
+            models = sorted(out.glob("*.sensor.yaml"))
+            export = run("model", *models, "--to", "ros", code=(0, 3))
+            expect((export.returncode == 3) == bad, f"{kind}: export of a model with {code}: exit {export.returncode}")
+            anyway = run("model", *models, "--to", "ros", "--anyway")
+            expect(first in anyway.stdout, f"{kind}: the exported file does not say {code}")
+        if code != "motion" and code != "not_gravity":
+            curve = run("allan", log, *options, "-o", here / f"{kind}.csv")
+            expect(first in curve.stderr, f"{kind}: allan does not say {code}")
+        lot = here / f"{kind}-lot"
+        run("characterize", log, *options, "--lot", "-o", lot, code=(0, 4, 3))
+        if not mends:
+            continue
+        remedy = re.search(r"\((--[^)]*)\)", said)
+        expect(remedy, f"{kind}: no remedy is printed")
+        if not remedy:
+            continue
+        mended = here / f"{kind}-mended"
+        run("characterize", log, *options, *shlex.split(remedy[1]), "-o", mended)
+        report = json.loads((mended / "report.json").read_text())
+        left = codes(report["summary"]["channels"][0]["findings"])
+        expect(code not in left, f"{kind}: {code} is still there after {remedy[1]}")
+        white = report["fit"]["channels"][0]["white_noise"]
+        low, high = white["ci95"]
+        wider = (high - low) / 2
+        expect(low - wider <= truth <= high + wider,
+               f"{kind}: N {white['value']} [{low}, {high}] after {remedy[1]}, true {truth}")
+
+print("\n".join(faults) or f"findings: {len(KINDS)} kinds travel, each remedy works")
+sys.exit(bool(faults))

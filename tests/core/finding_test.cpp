@@ -1,0 +1,59 @@
+// Kinds of findings: the table is whole; counted findings merge; the worst come first.
+
+#include "libchar/core/finding.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace libchar;
+
+TEST_CASE("findings: the table is in the order of its codes, and each says what it is") {
+  const auto kinds = finding_kinds();
+  REQUIRE(kinds.size() > 100);
+  CHECK(std::is_sorted(kinds.begin(), kinds.end(), [](const FindingKind& a, const FindingKind& b) {
+    return a.code < b.code;
+  }));
+  for (const FindingKind& kind : kinds) {
+    CAPTURE(kind.code);
+    CHECK_FALSE(kind.title.empty());
+    CHECK(kind.meaning.ends_with('.'));
+    CHECK((kind.remedy.empty() || kind.remedy.ends_with('.')));
+    CHECK(find_finding_kind(kind.code) == &kind);
+    // What is no mere note changes something, or says what to do.
+    if (kind.severity == Severity::bad)
+      CHECK_FALSE((kind.effects.empty() && kind.code != "no_fit" && kind.code != "no_value"));
+  }
+  CHECK(find_finding_kind("no such thing") == nullptr);
+}
+
+TEST_CASE("findings: severity and effects come from the code, the phrase from the sentence") {
+  const Finding held = finding("held_values", "Each value is recorded 7 times.");
+  CHECK(held.severity == Severity::caution);
+  CHECK(held.phrase == "each value is recorded 7 times");
+  REQUIRE(held.effects.size() == 1);
+  CHECK(held.effects[0] == Finding::Effect{Affected::white, Direction::too_large});
+}
+
+TEST_CASE("findings: cases of one code are counted, with their first three places") {
+  Findings a, b;
+  a.add("gap", "gaps in the stamps", "line 1");
+  a.add("gap", "other words", "line 2", 3);
+  b.add("jitter", "stamps scatter");
+  b.add("gap", "gaps", "line 9");
+  b.add("gap", "gaps", "line 10");
+  a.merge(b);
+  REQUIRE(a.list().size() == 2);
+  CHECK(a.find("gap")->count == 6);
+  CHECK(sentence_of(*a.find("gap")) == "6 × gaps in the stamps (first: line 1, line 2, line 9)");
+  CHECK(a.find("backward_timestamp") == nullptr);
+}
+
+TEST_CASE("findings: the worst first, in their order otherwise") {
+  const std::vector<Finding> all = worst_first(
+      {finding("gap", "a"), finding("motion", "b"), finding("no_fit", "c"), finding("spiky", "d")});
+  CHECK(all[0].code == "no_fit");
+  CHECK(all[1].code == "motion");
+  CHECK(all[2].code == "spiky");
+  CHECK(worst_of(all) == Severity::bad);
+  CHECK(worst_of({}) == Severity::note);
+}

@@ -1,0 +1,230 @@
+// Logs of which the truth is known: causes by which stamps are no even row of instants, in every unit,
+// with jitter and with gaps. Each is read with the right rate and no gap that is none, or is refused
+// with options that read it.
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <regex>
+
+#include "tests/log/log_text.hpp"
+
+using namespace libchar;
+using test::count;
+using test::read_text;
+
+namespace {
+
+struct Clock {
+  std::string name;
+  double unit_ns;
+};
+const std::vector<Clock> kClocks = {{"t[s]", 1e9}, {"t[ms]", 1e6}, {"t[us]", 1e3}, {"t[ns]", 1}};
+
+/// What a log says of its time, and what is true of it.
+struct TimedRows {
+  std::vector<double> instants;  // s, as written
+  double rate_hz = 0;
+  double missing = 0;   // samples
+  double unsure = 0.5;  // of these
+};
+
+struct Rules {
+  double rate_hz = 100, jitter = 0;  // of an interval
+  int gap = 0;                       // samples that are missing in the middle
+  std::size_t rows = 4000;
+};
+
+std::string text_of(const TimedRows& rows, const Clock& clock) {
+  std::string text = clock.name + ",x\n";
+  for (std::size_t i = 0; i < rows.instants.size(); ++i) {
+    const double value = rows.instants[i] * 1e9 / clock.unit_ns;
+    text += clock.unit_ns > 1e8   ? fmt::format("{:.6f},{}\n", value, (i * 7919) % 1000)
+            : clock.unit_ns > 1e5 ? fmt::format("{:.3f},{}\n", value, (i * 7919) % 1000)
+                                  : fmt::format("{:.0f},{}\n", value, (i * 7919) % 1000);
+  }
+  return text;
+}
+
+/// Instants of an even clock, with what the rules add.
+TimedRows even_rows(const Rules& rules) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 1);
+  TimedRows out{{}, rules.rate_hz, static_cast<double>(rules.gap)};
+  if (rules.gap > 100) out.unsure = 0.002 * rules.gap;
+  for (std::size_t i = 0; i < rules.rows; ++i) {
+    const double lost = 2 * i >= rules.rows ? rules.gap : 0;
+    out.instants.push_back(1000 + (static_cast<double>(i) + lost + rules.jitter * noise(random)) /
+                                      rules.rate_hz);
+  }
+  return out;
+}
+
+/// Each row arrives with the last one of its packet, `inner` of an interval after the one in front.
+TimedRows in_packets(const Rules& rules, std::size_t size, double inner) {
+  TimedRows out = even_rows(rules);
+  std::vector<double> arrived = out.instants;
+  for (std::size_t i = 0; i < arrived.size(); ++i) {
+    const std::size_t last = std::min(arrived.size() - 1, i - i % size + size - 1);
+    const double back = static_cast<double>(last - i) * inner / rules.rate_hz;
+    arrived[i] = out.instants[last] - back;
+  }
+  out.instants = arrived;
+  out.unsure += out.missing > 0 ? 2 : 0;
+  return out;
+}
+
+/// Steps of unlike length in turns, in intervals that are one in the mean.
+TimedRows in_turns(const Rules& rules, const std::vector<double>& steps) {
+  TimedRows out = even_rows(rules);
+  double off = 0;
+  for (std::size_t i = 0; i < out.instants.size(); ++i) {
+    out.instants[i] += off / rules.rate_hz;
+    off += steps[i % steps.size()] - 1;
+  }
+  return out;
+}
+
+TimedRows lossy(const Rules& rules, double share) {
+  std::mt19937_64 random(11);
+  std::bernoulli_distribution lost(share);
+  TimedRows all = even_rows(rules), out = all;
+  out.instants.clear();
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < all.instants.size(); ++i)
+    if (i == 0 || !lost(random)) {
+      out.instants.push_back(all.instants[i]);
+      last = i;
+    }
+  out.missing += static_cast<double>(last + 1 - out.instants.size());
+  out.unsure = 0.5 + 0.02 * out.missing;
+  return out;
+}
+
+TimedRows with_duty(const Rules& rules, std::size_t on, double off_s) {
+  TimedRows out = even_rows(rules);
+  for (std::size_t i = 0; i < out.instants.size(); ++i)
+    out.instants[i] += static_cast<double>(i / on) * off_s;
+  out.missing += static_cast<double>((out.instants.size() - 1) / on) * off_s * rules.rate_hz;
+  out.unsure = 0.5 + 0.002 * out.missing + static_cast<double>(out.instants.size() / on);
+  return out;
+}
+
+struct Cause {
+  std::string name;
+  std::function<TimedRows(const Rules&)> make;
+  const char* warning;
+};
+
+const std::vector<Cause> kCauses = {
+    {"even", even_rows, ""},
+    {"loss of 4 %", [](const Rules& r) { return lossy(r, 0.04); }, "gap"},
+    {"loss of 30 %", [](const Rules& r) { return lossy(r, 0.3); }, "gap"},
+    {"pause of 3000 s in turns",
+     [](const Rules& r) {
+       TimedRows out = in_turns(r, {0.9182, 0.9182, 0.9182, 1.1454, 1.1});
+       for (std::size_t i = 1000; i < out.instants.size(); ++i) out.instants[i] += 3000;
+       out.missing += 3000 * r.rate_hz;
+       out.unsure = 0.002 * out.missing;
+       return out;
+     },
+     "gap"},
+    {"duty cycle", [](const Rules& r) { return with_duty(r, 400, 20); }, "gap"},
+    {"packets of 11", [](const Rules& r) { return in_packets(r, 11, 0.7345); }, "packets"},
+    {"packets of 5", [](const Rules& r) { return in_packets(r, 5, 0.02); }, "packets"},
+    {"packets of equal stamps",
+     [](const Rules& r) { return in_packets(r, 4, 0); },
+     "coarse_stamps"},
+    {"messages in turns",
+     [](const Rules& r) {
+       return in_turns(r, {0.56, 1.44});
+     },
+     ""},
+    {"wild first rows",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       for (std::size_t i = 0; i < 3; ++i) out.instants[i] += 80000;
+       return out;
+     },
+     "wild_stamp"},
+    {"a wild row",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       out.instants[2500] = 4294967.295;
+       out.missing += 1;
+       return out;
+     },
+     "wild_stamp"},
+    {"a wild last row",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       out.instants.back() = 4294967.295;
+       return out;
+     },
+     "wild_stamp"},
+    {"32 bits of us",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       for (double& t : out.instants) t = std::fmod(t + 4294.967296 - 1010, 4294.967296);
+       return out;
+     },
+     "clock_rollover"},
+    {"32 bits of us, signed",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       for (double& t : out.instants)
+         if ((t += 2147.483648 - 1010) >= 2147.483648) t -= 4294.967296;
+       return out;
+     },
+     "clock_rollover"},
+    {"seconds of the day",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       for (double& t : out.instants) t = std::fmod(t + 86400 - 1010, 86400);
+       return out;
+     },
+     "clock_rollover"},
+    {"seconds of the week",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       for (double& t : out.instants) t = std::fmod(t + 604800 - 1010, 604800);
+       return out;
+     },
+     "clock_rollover"},
+};
+
+}  // namespace
+
+TEST_CASE("stamps of every cause, unit, jitter and gap: the right rate and no gap that is none") {
+  std::size_t inputs = 0;
+  for (const Cause& cause : kCauses)
+    for (const Clock& clock : kClocks)
+      for (const double jitter : {0.0, 0.02, 0.1})
+        for (const int gap : {0, 7, 5000}) {
+          Rules rules;
+          rules.jitter = cause.name == "packets of equal stamps" ? 0 : jitter;
+          rules.gap = gap;
+          const TimedRows truth = cause.make(rules);
+          INFO(cause.name << ", " << clock.name << ", jitter " << jitter << ", gap of " << gap);
+          ++inputs;
+          Recording r;
+          try {
+            r = read_text(text_of(truth, clock));
+          } catch (const Error& error) {
+            FAIL_CHECK(error.what());
+            continue;
+          }
+          std::string said;
+          for (const Warning& warning : r.info.warnings.list())
+            said += fmt::format("{} x {}; ", warning.count, warning.code);
+          INFO(said);
+          CHECK(r.info.time.rate_hz == Approx(truth.rate_hz).epsilon(1e-3));
+          CHECK(static_cast<double>(r.info.time.missing_samples) ==
+                Approx(truth.missing).margin(truth.unsure));
+          if (*cause.warning != '\0') CHECK(count(r, cause.warning) > 0);
+        }
+  CHECK(inputs >= 150);
+}

@@ -1,0 +1,80 @@
+#include "libchar/log/time/stamp_model.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace libchar;
+
+TEST_CASE("two rates in a row: where the one ends and the other begins") {
+  std::vector<double> rows, instants;
+  for (int i = 0; i < 3000; ++i) {
+    rows.push_back(i);
+    instants.push_back(i < 1367 ? 25.0 * i : 25.0 * 1367 + 40.0 * (i - 1367));
+  }
+  const auto change = find_rate_change(rows, instants);
+  REQUIRE(change);
+  CHECK(change->row == Approx(1367));
+  CHECK(change->before_ns == Approx(25));
+  CHECK(change->after_ns == Approx(40));
+  for (int i = 0; i < 3000; ++i) instants[i] = i + 2e-5 * i * i;  // a drift has no such place
+  CHECK_FALSE(find_rate_change(rows, instants));
+}
+
+TEST_CASE("rows missing at random stand on a lattice, whatever their jitter") {
+  std::uint64_t state = 1;
+  const auto random = [&] { return state = state * 6364136223846793005U + 1442695040888963407U; };
+  std::vector<std::int64_t> stamps;
+  for (std::int64_t i = 0; stamps.size() < 1025; ++i)
+    if ((random() >> 40U) % 10 < 4)
+      stamps.push_back(10000000 * i + static_cast<std::int64_t>((random() >> 40U) % 1500000));
+  const StampModel found = model_of_stamps(stamps);
+  CHECK(found.ns == Approx(1e7).epsilon(1e-3));
+  CHECK(found.pattern == StampPattern::steps);
+}
+
+TEST_CASE("steps of unlike length in turns are no gaps") {
+  std::vector<std::int64_t> stamps{0};
+  for (int i = 0; i < 1000; ++i) stamps.push_back(stamps.back() + (i % 2 == 0 ? 280 : 720));
+  const StampModel turns = model_of_stamps(stamps);
+  CHECK(turns.ns == Approx(500));
+  CHECK(turns.pattern == StampPattern::uneven);
+  stamps = {0};
+  for (int i = 0; i < 1000; ++i)
+    stamps.push_back(stamps.back() + (i % 5 < 3 ? 101 : i % 5 == 3 ? 126 : 121));
+  stamps.insert(stamps.end(), {});
+  for (std::size_t i = 500; i < stamps.size(); ++i) stamps[i] += 30000000;
+  CHECK(model_of_stamps(stamps).ns == Approx(110).epsilon(1e-3));
+}
+
+TEST_CASE("stamps that rise at all have an interval, however many are equal") {
+  std::vector<std::int64_t> stamps(16, 0);
+  for (const std::int64_t later : {1000, 2000, 3000, 4000}) stamps.push_back(later);
+  const StampModel found = model_of_stamps(stamps);
+  CHECK(found.ns == 1000);
+  CHECK(found.longest_step >= found.ns);
+  CHECK(found.pattern == StampPattern::equal);
+}
+
+TEST_CASE("of a short log on a coarse clock the interval is that of rows over time") {
+  // 4.2 ticks: steps of 4 and, one in five, of 5.
+  std::vector<std::int64_t> stamps{0};
+  for (int i = 0; i < 40; ++i) stamps.push_back(stamps.back() + (i % 5 == 4 ? 5000000 : 4000000));
+  const StampModel found = model_of_stamps(stamps);
+  CHECK(found.ns == Approx(4.2e6).epsilon(0.002));
+  CHECK(found.step_ns == 4e6);
+  CHECK(found.longest_step > 5e6);
+}
+
+TEST_CASE("in a longer log two rounded stamps may be up to two ticks apart from one line") {
+  // The same clock, and now and then a step of 5 comes early and the next one late: 1.6 ticks from end to end.
+  const auto found = [](int groups) {
+    std::vector<std::int64_t> stamps{0};
+    for (int g = 0; g < groups; ++g)
+      for (int i = 0; i < 5; ++i)
+        stamps.push_back(stamps.back() + (i == (2 * g >= groups && 2 * g < groups + 2 ? 0 : 4)
+                                              ? 5000000
+                                              : 4000000));
+    return model_of_stamps(stamps).ns;
+  };
+  CHECK(found(16) == Approx(4.2e6).epsilon(0.002));  // sixteen odd steps
+  CHECK(found(10) == Approx(4.2e6).epsilon(0.002));
+}
