@@ -156,9 +156,7 @@ AllanPoint point_of(const Totals& total,
                "",
                std::string(f.word) + " needs at least " + std::to_string(needed) +
                    " consecutive samples; none of its terms fits the " + std::to_string(samples) +
-                   " of this record",
-               "",
-               ""});
+                   " of this record"});
 }
 
 IndexRange longest(std::span<const double> record) {
@@ -191,9 +189,7 @@ std::span<const double> without_gaps(std::span<const double> record,
                "E0401",
                "",
                "no averaging time that was asked for fits the record of " +
-                   duration_text(static_cast<double>(curve.samples) * curve.dt_s),
-               "",
-               ""});
+                   duration_text(static_cast<double>(curve.samples) * curve.dt_s)});
 }
 
 void check(double dt_s, const AllanOptions& options) {
@@ -202,10 +198,9 @@ void check(double dt_s, const AllanOptions& options) {
                  "E0201",
                  "",
                  "the sampling interval must be a positive number of seconds",
-                 shortest(dt_s),
-                 ""});
+                 shortest(dt_s)});
   if (options.grid == TauGrid::list && options.taus_s.empty())
-    throw Error({ErrorKind::usage, "E0201", "", "no averaging time is listed", "", ""});
+    throw Error({ErrorKind::usage, "E0201", "", "no averaging time is listed"});
 }
 
 std::vector<AllanPoint> points_of_phase(const AnchoredPhase& phase,

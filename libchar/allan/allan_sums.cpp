@@ -215,9 +215,7 @@ AllanCurve octave_curve(const AllanSums& sums, double dt_s) {
          "E0401",
          "",
          "an Allan deviation needs at least 2 consecutive samples; none of its terms fits the " +
-             std::to_string(curve.samples) + " of this record",
-         "",
-         ""});
+             std::to_string(curve.samples) + " of this record"});
   for (const AllanPoint& point : curve.points) count_work(WorkKind::allan_terms, point.terms);
   return curve;
 }

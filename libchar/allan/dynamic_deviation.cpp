@@ -17,7 +17,7 @@ constexpr std::uint64_t kShortestWindow = 8, kMostWindows = 1000000;
 
 void check_window(std::uint64_t samples, std::uint64_t window, std::uint64_t step) {
   const auto refuse = [](const std::string& what, const std::string& got) {
-    throw Error({ErrorKind::usage, "E0871", "`dynamic`", what, got, ""});
+    throw Error({ErrorKind::usage, "E0871", "`dynamic`", what, got});
   };
   if (window < kShortestWindow)
     refuse(fmt::format("a window needs at least {} samples", kShortestWindow),

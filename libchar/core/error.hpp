@@ -20,13 +20,13 @@ enum class ErrorKind {
 /// `one_line`, so a thrower passes them as they are.
 struct Problem {
   ErrorKind kind = ErrorKind::input;
-  std::string code;  ///< "E0312"; "" when there is none
-  std::string
-      where;  ///< "FILE:LINE:COL (byte N)" or "FILE (byte N, field NAME)"; "" when nowhere in particular
-  std::string what;  ///< what was found and what was expected
-  std::string
-      got;  ///< offending excerpt, shown quoted and cut to 40 characters; "" when there is none
-  std::string hint;  ///< what to do; "" when there is nothing to do
+  std::string code = {};  ///< "E0312"; "" when there is none
+  /// "FILE:LINE:COL (byte N)" or "FILE (byte N, field NAME)"; "" when nowhere in particular
+  std::string where = {};
+  std::string what = {};  ///< what was found and what was expected
+  std::string got =
+      {};  ///< offending excerpt, shown quoted and cut to 40 characters; "" when there is none
+  std::string hint = {};  ///< what to do; "" when there is nothing to do
 };
 
 /// "WHERE: error CODE: WHAT; got "GOT"; hint: HINT", on one line, control characters escaped.

@@ -48,7 +48,7 @@ void check_needs(const ExportTarget& target, const SensorGroup& group) {
 void check_options(const ExportOptions& options) {
   const auto positive = [](const char* name, double value) {
     if (!(value > 0))
-      throw Error({ErrorKind::usage, "E0591", name, "expected a number > 0", shortest(value), ""});
+      throw Error({ErrorKind::usage, "E0591", name, "expected a number > 0", shortest(value)});
   };
   positive("`inflate`", options.inflate);
   positive("`filter_step_s`", options.filter_step_s);

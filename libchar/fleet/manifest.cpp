@@ -49,7 +49,7 @@ std::string trimmed(const std::string& cell) {
 }
 
 [[noreturn]] void refuse(const std::string& path, int line, const std::string& what) {
-  throw Error({ErrorKind::input, "E0781", fmt::format("{}:{}:1", path, line), what, "", ""});
+  throw Error({ErrorKind::input, "E0781", fmt::format("{}:{}:1", path, line), what});
 }
 
 /// A cell that begins with a quotation mark ends with one, and has two for each of its own (RFC
@@ -213,8 +213,7 @@ void check_heads(const TableText& table, const std::string& path) {
                    "E0781",
                    fmt::format("{}:{}:1", path, table.head_line),
                    "a column stands twice",
-                   one,
-                   ""});
+                   one});
     Document value;
     value.kind = Document::Kind::text;
     head.map.push_back({one, head.line, 1, value});
@@ -358,7 +357,7 @@ void refuse_manifest_among(const std::vector<std::string>& logs) {
 
 void check_devices(const Manifest& manifest, const std::string& path) {
   if (manifest.devices.empty())
-    throw Error({ErrorKind::input, "E0780", path, "the fleet has no device", "", ""});
+    throw Error({ErrorKind::input, "E0780", path, "the fleet has no device"});
   for (const FleetDevice& one : manifest.devices) {
     if (one.device.empty() || first_invalid_utf8(one.device) != std::string::npos)
       throw Error({ErrorKind::input,

@@ -51,8 +51,7 @@ void Settings::set(std::string_view name, double value) {
                    "E0851",
                    "",
                    std::string(name) + " takes " + range_of(option),
-                   shortest(value),
-                   ""});
+                   shortest(value)});
     values_[i] = value;
     return;
   }

@@ -57,7 +57,7 @@ constexpr auto kOptions = all_options<A>();
 template <Algorithm A>
 std::unique_ptr<Runner> make(const Array& array, const Settings& settings) {
   if (std::string sentence = why_not(A::description, array); !sentence.empty())
-    throw Error({ErrorKind::usage, "E0852", "", std::move(sentence), "", ""});
+    throw Error({ErrorKind::usage, "E0852", "", std::move(sentence)});
   auto runner = std::make_unique<RunnerOf<A>>(array, settings);
   if constexpr (kWatchable<A>)
     if (settings["fault_detection"] == 1)

@@ -38,12 +38,8 @@ namespace {
 std::string front_of(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0)
-    throw Error({ErrorKind::input,
-                 "E0101",
-                 path,
-                 std::string("cannot open: ") + std::strerror(errno),
-                 "",
-                 ""});
+    throw Error(
+        {ErrorKind::input, "E0101", path, std::string("cannot open: ") + std::strerror(errno)});
   struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
     ::close(descriptor);
@@ -338,8 +334,7 @@ void check_rate_option(const ReadOptions& options) {
                  "E0201",
                  "`rate_hz`",
                  "the rate must be a positive number of hertz, from 1e-9 to 1e12",
-                 shortest(*options.rate_hz),
-                 ""});
+                 shortest(*options.rate_hz)});
 }
 
 /// What the grid of instants knows better than the head of the log.
@@ -360,7 +355,7 @@ void take_grid(const LogInfo& known, LogInfo& info) {
 }
 
 void refuse_without_samples(const LogInfo& info, const ReadOptions& options) {
-  if (info.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows", "", ""});
+  if (info.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows"});
   if (info.samples == 0 && (options.from_s || options.to_s))
     throw Error({ErrorKind::usage,
                  "E0319",

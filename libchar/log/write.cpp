@@ -17,8 +17,7 @@ void check_word(const char* option, const std::string& got, const std::vector<st
                  "E0507",
                  option,
                  fmt::format("expected {}", fmt::join(words, " or ")),
-                 got,
-                 ""});
+                 got});
 }
 
 // "a, b or c".
@@ -47,8 +46,7 @@ const Format& format_to_write_of(const std::string& path, const WriteOptions& op
                "E0506",
                path,
                "no such format to write; " + listed(words, " and ") + " are written",
-               options.format,
-               ""});
+               options.format});
 }
 
 }  // namespace
@@ -77,7 +75,7 @@ std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
   check_word("`dtype`", options.dtype, {"f64", "f32"});
   check_word("`order`", options.order, {"interleaved", "planar"});
   if (info.channels.empty())
-    throw Error({ErrorKind::usage, "E0508", path, "there is no channel to write", "", ""});
+    throw Error({ErrorKind::usage, "E0508", path, "there is no channel to write"});
   return format_to_write_of(path, options).write(path, info, options);
 }
 

@@ -189,7 +189,7 @@ std::string why_nothing_fitted(const DeviceRecord& record) {
   if (!record.problem.empty()) return "";
   for (const RecordedChannel& channel : record.channels)
     if (channel.fitted) return "";
-  Problem problem{ErrorKind::numeric, "E0711", record.log, "no channel could be fitted", "", ""};
+  Problem problem{ErrorKind::numeric, "E0711", record.log, "no channel could be fitted"};
   if (!record.channels.empty() && !record.channels[0].findings.empty())
     problem.what +=
         fmt::format("; {}: {}", record.channels[0].name, record.channels[0].findings[0].sentence);

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "libchar/core/numeric/random_effects.hpp"
-#include "libchar/lot/capability.hpp"
 #include "libchar/lot/control_chart.hpp"
 #include "libchar/lot/device_batches.hpp"
 #include "libchar/lot/device_record.hpp"

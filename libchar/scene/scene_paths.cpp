@@ -153,9 +153,7 @@ std::string path_for_scene(const std::string& file, const std::string& scene) {
     throw Error({ErrorKind::input,
                  "E0732",
                  scene,
-                 fmt::format("cannot look at {}: {}", printable(file), problem.message()),
-                 "",
-                 ""});
+                 fmt::format("cannot look at {}: {}", printable(file), problem.message())});
   const fs::path relative = target.lexically_relative(root);
   const std::string name =
       relative.empty() || leaves(relative) ? target.string() : relative.string();

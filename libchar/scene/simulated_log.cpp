@@ -25,8 +25,7 @@ void check_columns(const ArraySimulation& simulation, bool truth) {
                  "E0721",
                  "simulate",
                  "a channel has the name of the temperature column",
-                 "temperature",
-                 ""});
+                 "temperature"});
 }
 
 void stream_into(LogWriter& writer,

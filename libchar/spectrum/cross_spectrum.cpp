@@ -104,8 +104,7 @@ CrossSpectrum cross_spectrum(std::span<const double> x,
                  "E0873",
                  "",
                  "a cross spectrum is of two records of one length",
-                 fmt::format("{} and {} samples", x.size(), y.size()),
-                 ""});
+                 fmt::format("{} and {} samples", x.size(), y.size())});
   CrossSpectrum out;
   const Layout layout =
       layout_of(choose_segment(presence(x, y), options, out.notes), options.overlap);

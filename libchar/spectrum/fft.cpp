@@ -32,8 +32,7 @@ struct RealFft::State {
 
 RealFft::RealFft(std::size_t n) : state_(std::make_unique<State>()) {
   if (n == 0)
-    throw Error(
-        {ErrorKind::numeric, "E0413", "", "a Fourier transform needs at least one value", "", ""});
+    throw Error({ErrorKind::numeric, "E0413", "", "a Fourier transform needs at least one value"});
   state_->n = n;
   state_->values = aligned<double>(n);
   state_->spectrum = aligned<std::complex<double>>(n / 2 + 1);
@@ -291,8 +290,7 @@ struct Dct::State {
 
 Dct::Dct(std::size_t n) {
   if (n == 0)
-    throw Error(
-        {ErrorKind::numeric, "E0413", "", "a cosine transform needs at least one value", "", ""});
+    throw Error({ErrorKind::numeric, "E0413", "", "a cosine transform needs at least one value"});
   state_ = std::make_unique<State>(n);
 }
 Dct::~Dct() = default;
@@ -329,9 +327,7 @@ std::span<const double> Dct::transform(std::span<const double> y) {
     throw Error({ErrorKind::numeric,
                  "E0413",
                  "",
-                 fmt::format("a cosine transform of {} values was given {}", n, y.size()),
-                 "",
-                 ""});
+                 fmt::format("a cosine transform of {} values was given {}", n, y.size())});
   count_work(WorkKind::cosine_transforms, 1);
   const double centre = centre_of(y);
   state_->permute(y, centre);
@@ -382,8 +378,7 @@ struct CosineSums::State {
 
 CosineSums::CosineSums(std::size_t n) : state_(std::make_unique<State>()) {
   if (n == 0)
-    throw Error(
-        {ErrorKind::numeric, "E0413", "", "sums of cosines need at least one value", "", ""});
+    throw Error({ErrorKind::numeric, "E0413", "", "sums of cosines need at least one value"});
   State& s = *state_;
   s.n = n;
   s.values = aligned<double>(n);

@@ -227,8 +227,7 @@ std::uint64_t segment_samples(double seconds, double rate_hz) {
                              brief_text(rate_hz, 6),
                              brief_text(samples, 6),
                              kShortestSegment),
-                 got,
-                 ""});
+                 got});
   return static_cast<std::uint64_t>(samples);
 }
 

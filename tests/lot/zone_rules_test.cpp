@@ -1,7 +1,5 @@
 // The four zone rules: each on values that hold it and on values that just do not, and how often chance brings them.
 
-#include "libchar/lot/zone_rules.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>

@@ -59,8 +59,7 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
                    "E0201",
                    "`taus_s`",
                    "an averaging time must be a positive number of seconds",
-                   shortest(tau),
-                   ""});
+                   shortest(tau)});
     const double m = std::max(1.0, std::round(tau / dt_s));
     moved += std::abs(m * dt_s / tau - 1) > 1e-6 ? 1 : 0;
     if (m > largest)

@@ -52,7 +52,7 @@ constexpr double kDigitised =
     1e-6;  ///< relative scatter below which differences of fit mean nothing
 
 [[noreturn]] void refuse(const std::string& what, const std::string& got = "") {
-  throw Error({ErrorKind::input, "E0803", "", what, got, ""});
+  throw Error({ErrorKind::input, "E0803", "", what, got});
 }
 
 void check(const DigitisedCurve& curve) {

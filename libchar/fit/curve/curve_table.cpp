@@ -154,8 +154,7 @@ class Reader {
                  "E0311",
                  fmt::format("{}:{}:{}", file_, row.line, cell.column),
                  "a number was expected",
-                 cell.text,
-                 ""});
+                 cell.text});
   }
 
   // Of the deviation (root), to first order half of the relative sd of its square, which is sqrt(2 / edf) for chi-square.

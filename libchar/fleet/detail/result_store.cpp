@@ -110,9 +110,7 @@ void refuse_unwritable(const fs::path& path, int number) {
   throw Error({ErrorKind::output,
                "E0790",
                path.string(),
-               "cannot be written: " + std::generic_category().message(number),
-               "",
-               ""});
+               "cannot be written: " + std::generic_category().message(number)});
 }
 
 void make_fleet_folder(const fs::path& folder) {

@@ -20,8 +20,7 @@ std::string command_of(const JobOptions& options) {
                  "E0205",
                  "`program`",
                  "expected a program or a command of one line",
-                 program,
-                 ""});
+                 program});
   std::error_code ignored;
   // Without a slash a shell seeks it in its PATH, not here.
   const bool path = program.find('/') != std::string::npos;

@@ -173,12 +173,11 @@ void BestAxes::finish_learning() {
     if (square >= 0) square = std::max({square, least, std::numeric_limits<double>::min()});
   choose_all();
   if (!all_.determined)
-    throw Error({ErrorKind::numeric,
-                 "E0856",
-                 "",
-                 "best-axes: no channels with samples in the learning window determine the inputs",
-                 "",
-                 ""});
+    throw Error(
+        {ErrorKind::numeric,
+         "E0856",
+         "",
+         "best-axes: no channels with samples in the learning window determine the inputs"});
 }
 
 void BestAxes::choose_all() {

@@ -17,8 +17,7 @@ void require_channel(Eigen::Index wanted, Eigen::Index channels, const char* opt
          "E0855",
          "",
          std::string(option) + " must be one of the " + std::to_string(channels) + " channels",
-         std::to_string(wanted),
-         ""});
+         std::to_string(wanted)});
 }
 
 }  // namespace

@@ -106,8 +106,7 @@ BlindGls::BlindGls(const Array& array, const Settings& settings)
                  "E0855",
                  "",
                  "gauge must be one of the " + std::to_string(array.channels) + " channels",
-                 std::to_string(gauge_),
-                 ""});
+                 std::to_string(gauge_)});
 }
 
 /// Gains in the gauge, variances in the unit of the samples.

@@ -258,7 +258,7 @@ void LearntMean::exchange(LearntExchange& with, Eigen::Index channels) {
   with.number("variance", learnt.variance);
   if (!with.taking_in()) return;
   if ((learnt.gain.array() == 0).any())
-    throw Error({ErrorKind::input, "E0866", "", "learnt.gains: a gain of zero", "", ""});
+    throw Error({ErrorKind::input, "E0866", "", "learnt.gains: a gain of zero"});
   take(learnt);
 }
 

@@ -16,4 +16,8 @@ namespace libchar {
 std::unique_ptr<TopicReader> array_tables(std::unique_ptr<ArrayContainer> container,
                                           const std::string& path);
 
+/// A HDF5 file as a container: the formats hdf5 and matlab (version 7.3) open it. `kind` stands in the dialect
+/// ("HDF5"). Throws Error(input): E0465 for what cannot be read, E0467 when the library is not built in.
+std::unique_ptr<ArrayContainer> open_hdf5_file(const std::string& path, const std::string& kind);
+
 }  // namespace libchar

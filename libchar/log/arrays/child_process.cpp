@@ -43,9 +43,7 @@ void confine() {
       {ErrorKind::input,
        "E0465",
        "",
-       fmt::format("no process can be started to read it in: {}: {}", what, std::strerror(errno)),
-       "",
-       ""});
+       fmt::format("no process can be started to read it in: {}: {}", what, std::strerror(errno))});
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
 #include "libchar/log/arrays/child_process.hpp"
-#include "libchar/log/arrays/hdf5_file.hpp"
 #include "libchar/log/arrays/hdf5_worker.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/format.hpp"

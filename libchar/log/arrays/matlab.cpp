@@ -11,7 +11,6 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
-#include "libchar/log/arrays/hdf5_file.hpp"
 #include "libchar/log/arrays/log_array.hpp"
 #include "libchar/log/arrays/packed_array.hpp"
 #include "libchar/log/binary/file.hpp"

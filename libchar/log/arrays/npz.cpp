@@ -48,12 +48,8 @@ constexpr std::string_view kLocalMagic = "PK\x03\x04";
 }
 
 [[noreturn]] void refuse_member(const BinaryFile& file, const std::string& name, std::string what) {
-  throw Error({ErrorKind::input,
-               "E0462",
-               fmt::format("{}, {}", file.path(), name),
-               std::move(what),
-               "",
-               ""});
+  throw Error(
+      {ErrorKind::input, "E0462", fmt::format("{}, {}", file.path(), name), std::move(what)});
 }
 
 // Little-endian integers of a piece of the file.

@@ -284,8 +284,7 @@ class Planner {
     std::set<std::string> names;
     for (const Channel& field : table.topic.fields)
       if (!names.insert(field.name).second)
-        throw Error(
-            {ErrorKind::input, "E0307", file_, "two columns have one name", field.name, ""});
+        throw Error({ErrorKind::input, "E0307", file_, "two columns have one name", field.name});
     table.rate_hz = rate_of(key, members);
     table.topic.rate_hz = table.rate_hz;
     plan_.tables.push_back(std::move(table));

@@ -109,9 +109,7 @@ void BinaryFile::read(std::uint64_t offset, std::span<std::byte> to) const {
       throw Error({ErrorKind::input,
                    "E0101",
                    fmt::format("{} (byte {})", path_, offset + done),
-                   fmt::format("cannot be read: {}", std::strerror(errno)),
-                   "",
-                   ""});
+                   fmt::format("cannot be read: {}", std::strerror(errno))});
     if (n == 0)
       throw Error({ErrorKind::input,
                    "E0104",

@@ -103,12 +103,11 @@ double rate_of(const BinaryFile& file, const Preset& preset) {
   const double span = stamp_of(file, rows - 1, preset.type) - stamp_of(file, 0, preset.type);
   const double rate = std::round(static_cast<double>(rows - 1) / span);
   if (!(rate >= 1))
-    throw Error({ErrorKind::input,
-                 "E0469",
-                 file.path(),
-                 "its times say less than half a record a second; increments need their whole rate",
-                 "",
-                 ""});
+    throw Error(
+        {ErrorKind::input,
+         "E0469",
+         file.path(),
+         "its times say less than half a record a second; increments need their whole rate"});
   return rate;
 }
 
@@ -140,8 +139,7 @@ BinaryLayout layout_of(const BinaryFile& file, const Preset& preset, double rate
 std::unique_ptr<RowSource> open_imu(const std::string& path, const ReadOptions& options) {
   auto file = std::make_unique<BinaryFile>(path);
   const Preset& preset = find_preset(path, options.preset);
-  if (file->size() == 0)
-    throw Error({ErrorKind::input, "E0322", path, "the file is empty", "", ""});
+  if (file->size() == 0) throw Error({ErrorKind::input, "E0322", path, "the file is empty"});
   if (!times_rise(*file, preset.type)) refuse_times(*file, preset);
   const double rate = rate_of(*file, preset);
   BinaryLayout layout = layout_of(*file, preset, rate);

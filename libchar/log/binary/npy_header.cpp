@@ -321,12 +321,8 @@ NpyHeader parse_npy_header(std::string_view bytes,
                            const std::string& file) {
   check_magic(bytes, file);
   const auto refuse = [&](int byte, std::string what) {
-    throw Error({ErrorKind::input,
-                 "E0405",
-                 fmt::format("{} (byte {})", file, byte),
-                 std::move(what),
-                 "",
-                 ""});
+    throw Error(
+        {ErrorKind::input, "E0405", fmt::format("{} (byte {})", file, byte), std::move(what)});
   };
   if (bytes.size() < 10) refuse(static_cast<int>(bytes.size()), "ends within its header");
   const auto byte = [&](std::size_t i) {

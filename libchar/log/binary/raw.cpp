@@ -27,7 +27,7 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Warning
   const std::uint64_t present = file.size() - sidecar.offset;
   const std::uint64_t record = sidecar.channels.size() * size_of(sidecar.number.type);
   const std::uint64_t whole = present / record;
-  if (present == 0) throw Error({ErrorKind::input, "E0322", path, "holds no samples", "", ""});
+  if (present == 0) throw Error({ErrorKind::input, "E0322", path, "holds no samples"});
   if (whole == 0)
     refuse_raw(fmt::format("{} (byte {})", path, file.size()),
                fmt::format("{} bytes are less than one row of {}", present, record));

@@ -56,7 +56,7 @@ class BinaryRows final : public RowSource {
     }
     missing_per_channel_.assign(values_.size(), 0);
     if (layout_.rows == 0)
-      throw Error({ErrorKind::input, "E0322", file_->path(), "holds no samples", "", ""});
+      throw Error({ErrorKind::input, "E0322", file_->path(), "holds no samples"});
     if (time) {
       time_ = layout_.columns[*time];
       info_.time.column = time_->name;

@@ -255,9 +255,7 @@ Sidecar read_sidecar(const std::string& path) {
         {ErrorKind::input,
          "E0605",
          path,
-         fmt::format("a sidecar of {} bytes exceeds the limit of {}", file.size(), kMaxBytes),
-         "",
-         ""});
+         fmt::format("a sidecar of {} bytes exceeds the limit of {}", file.size(), kMaxBytes)});
   return parse_sidecar(file.head(kMaxBytes), path, path.ends_with(".json"));
 }
 

@@ -301,9 +301,7 @@ std::unique_ptr<TopicReader> open_dataflash(const std::string& path, const ReadO
     throw Error({ErrorKind::input,
                  "E0485",
                  path,
-                 "is no DataFlash log: it defines no message, or has none of those it defines",
-                 "",
-                 ""});
+                 "is no DataFlash log: it defines no message, or has none of those it defines"});
   return reader;
 }
 

@@ -141,7 +141,7 @@ sqlite3* open_sqlite(const std::string& path) {
   if (code == SQLITE_OK) return handle;
   const std::string why = sqlite3_errstr(code);
   sqlite3_close(handle);
-  throw Error({ErrorKind::input, "E0101", path, "cannot be opened: " + why, "", ""});
+  throw Error({ErrorKind::input, "E0101", path, "cannot be opened: " + why});
 }
 
 }  // namespace libchar

@@ -44,23 +44,20 @@ TimeGrid::TimeGrid(const RowSource& source,
                    BlockSink& sink,
                    Warnings& warnings)
     : source_(source), options_(options), output_(sink), warnings_(warnings) {
-  const auto instant = [](const std::optional<double>& s,
-                          std::int64_t otherwise,
-                          const char* name) {
-    if (!s) return otherwise;
-    if (!std::isfinite(*s) || std::fabs(*s) > 9e9)
-      throw Error({ErrorKind::usage, "E0201", name, "is not a time in seconds", shortest(*s), ""});
-    return static_cast<std::int64_t>(std::llround(*s * 1e9));
-  };
+  const auto instant =
+      [](const std::optional<double>& s, std::int64_t otherwise, const char* name) {
+        if (!s) return otherwise;
+        if (!std::isfinite(*s) || std::fabs(*s) > 9e9)
+          throw Error({ErrorKind::usage, "E0201", name, "is not a time in seconds", shortest(*s)});
+        return static_cast<std::int64_t>(std::llround(*s * 1e9));
+      };
   window_.from_ns = instant(options.from_s, 0, "`from_s`");
   window_.to_ns = instant(options.to_s, INT64_MAX, "`to_s`");
   if (window_.to_ns <= window_.from_ns)
     throw Error({ErrorKind::usage,
                  "E0201",
                  "`to_s`",
-                 "the window is empty: `to_s` does not lie after `from_s`",
-                 "",
-                 ""});
+                 "the window is empty: `to_s` does not lie after `from_s`"});
 }
 
 bool TimeGrid::push(RowBlock& block) {

@@ -41,9 +41,7 @@ void ValueWriter::fail(const char* doing) const {
   throw Error({ErrorKind::output,
                "E0501",
                file_.path(),
-               fmt::format("cannot {}: {}", doing, std::strerror(errno)),
-               "",
-               ""});
+               fmt::format("cannot {}: {}", doing, std::strerror(errno))});
 }
 
 void ValueWriter::encode(double value, std::byte* to) {

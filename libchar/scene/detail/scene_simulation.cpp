@@ -210,16 +210,13 @@ void add_truth(const MapReader& at,
     throw Error({ErrorKind::input,
                  "E0737",
                  at.where(place),
-                 fmt::format("{}.name: the name of a signal is empty or holds a zero byte", path),
-                 "",
-                 ""});
+                 fmt::format("{}.name: the name of a signal is empty or holds a zero byte", path)});
   if (std::find(s.truth_names.begin(), s.truth_names.end(), name) != s.truth_names.end())
     throw Error({ErrorKind::input,
                  "E0737",
                  at.where(place),
                  fmt::format("{}.name: two truth signals have one name", path),
-                 name,
-                 ""});
+                 name});
   s.truth.push_back(std::move(spec));
   s.truth_names.push_back(std::move(name));
 }

@@ -68,9 +68,7 @@ void* allocated(std::size_t values, std::size_t bytes_each) {
     throw Error({ErrorKind::numeric,
                  "E0403",
                  "",
-                 fmt::format("not enough memory for a Fourier transform of {} values", values),
-                 "",
-                 ""});
+                 fmt::format("not enough memory for a Fourier transform of {} values", values)});
   return memory;
 }
 

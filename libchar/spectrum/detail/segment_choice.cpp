@@ -71,9 +71,7 @@ std::uint64_t choose_segment(std::span<const double> record,
                    fmt::format("a spectrum needs at least {} consecutive samples; the longest "
                                "stretch without a missing one has {}",
                                kShortestSegment,
-                               longest(runs)),
-                   "",
-                   ""});
+                               longest(runs))});
     segment = kShortestSegment;
   }
   if (segment < wanted)

@@ -164,15 +164,13 @@ void check_options(const WelchOptions& options) {
                  "E0201",
                  "`overlap`",
                  "the overlap of segments is a fraction of a segment, from 0 to below 1",
-                 fmt::format("{}", options.overlap),
-                 ""});
+                 fmt::format("{}", options.overlap)});
   if (options.segment != 0 && options.segment < kShortestSegment)
     throw Error({ErrorKind::usage,
                  "E0201",
                  "`segment`",
                  fmt::format("a segment needs at least {} samples", kShortestSegment),
-                 fmt::format("{}", options.segment),
-                 ""});
+                 fmt::format("{}", options.segment)});
 }
 
 void check_rate(double rate_hz) {
@@ -181,8 +179,7 @@ void check_rate(double rate_hz) {
                  "E0402",
                  "",
                  "a spectrum needs a finite sampling rate above zero",
-                 fmt::format("{}", rate_hz),
-                 ""});
+                 fmt::format("{}", rate_hz)});
 }
 
 void note_dropped(std::uint64_t dropped, std::uint64_t used, std::vector<std::string>& notes) {

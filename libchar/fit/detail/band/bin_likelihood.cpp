@@ -28,9 +28,7 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
     throw Error({ErrorKind::numeric,
                  "E0401",
                  "",
-                 "the record is too short: no frequency is left to be fitted",
-                 "",
-                 ""});
+                 "the record is too short: no frequency is left to be fitted"});
   double largest = 0;
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
   constexpr double kLargestPower = 1e200, kSmallestPower = 1e-200;  // their products are numbers
@@ -48,9 +46,7 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
          "E0412",
          "",
          "the record is constant, or its squares are too small for a double: there is no noise "
-         "to fit",
-         "",
-         ""});
+         "to fit"});
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     const PowerBin& bin = bins[static_cast<std::size_t>(j)];

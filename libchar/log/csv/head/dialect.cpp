@@ -656,9 +656,7 @@ struct Study {
     throw Error({ErrorKind::input,
                  "E0322",
                  at(info.file, 1, 1, 0),
-                 "no data: the file holds only blank lines and comments",
-                 "",
-                 ""});
+                 "no data: the file holds only blank lines and comments"});
   }
 
   void run() {

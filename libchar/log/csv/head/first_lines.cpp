@@ -173,7 +173,7 @@ void refuse_other_content(std::string_view head, const std::string& file) {
   const char* what = nullptr;
   const char* hint = "";
   if (head.empty())
-    throw Error({ErrorKind::input, "E0322", at(file, 1, 1, 0), "the file is empty", "", ""});
+    throw Error({ErrorKind::input, "E0322", at(file, 1, 1, 0), "the file is empty"});
   if (begins("\x93NUMPY"))
     what = "content is a NumPy array (NPY), not CSV", hint = "read it with `format` npy";
   else if (begins("\x1F\x8B"))
