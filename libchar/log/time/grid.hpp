@@ -55,6 +55,7 @@ class TimeGrid {
   void learn();
   std::vector<std::int64_t> first_stamps();
   void drop_wild_start(const std::vector<std::int64_t>& stamps);
+  void leave_out_first_rate(const std::vector<std::int64_t>& stamps);
   void refuse_without_axis(const std::vector<std::int64_t>& stamps);
   void say_pattern(const StampModel& found);
   double even_interval();

@@ -354,14 +354,19 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps,
 StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz) {
   const FirstSteps steps = steps_of(stamps);
   if (steps.rising.empty()) return {};
-  std::vector<double> rows(stamps.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i);
-  const auto change = find_rate_change(rows, steps.line);
+  const auto change = find_rate_change(stamps);
   if (!change) return model_of_one_rate(stamps, steps, rate_hz);
   const auto at = stamps.begin() + static_cast<std::ptrdiff_t>(change->row);
   const bool later = 2 * change->row < static_cast<double>(stamps.size());
   const std::vector<std::int64_t> part(later ? at + 1 : stamps.begin(), later ? stamps.end() : at);
   return model_of_one_rate(part, steps_of(part), rate_hz);
+}
+
+std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stamps) {
+  const FirstSteps steps = steps_of(stamps);
+  std::vector<double> rows(steps.line.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i);
+  return find_rate_change(rows, steps.line);
 }
 
 std::optional<RateChange> find_rate_change(std::span<const double> rows,
