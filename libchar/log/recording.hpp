@@ -63,7 +63,7 @@ struct LogInfo {
       0;  ///< data rows in the file; before its end as the first ones let expect, 0 when there is no telling
   std::uint64_t rows_used = 0;  ///< of these, on the grid: rows = used + dropped + outside
   std::uint64_t rows_dropped =
-      0;  ///< with a warning that says why (duplicate_timestamp, backward_timestamp)
+      0;  ///< with a warning that says why (duplicate_timestamp, backward_timestamp, wild_stamp, own_rows)
   std::uint64_t rows_outside = 0;  ///< before `from_s` or from `to_s` on
   std::uint64_t samples = 0;       ///< grid points delivered (rows used + missing)
   bool read_ahead = false;         ///< other threads read and parse while the caller works

@@ -190,7 +190,8 @@ void check_account(const std::string& out) {
       return log["repairs"].contains(key) ? log["repairs"][key].get<std::uint64_t>() : 0;
     };
     CHECK(number("rows") == number("rows_used") + number("rows_dropped") + number("rows_outside"));
-    CHECK(number("rows_dropped") == repairs("duplicate_timestamp") + repairs("backward_timestamp"));
+    CHECK(number("rows_dropped") == repairs("duplicate_timestamp") + repairs("backward_timestamp") +
+                                        repairs("wild_stamp") + repairs("own_rows"));
     CHECK(number("samples") == number("rows_used") + number("missing_samples"));
   }
 }

@@ -164,7 +164,7 @@ TEST_CASE("a lasting change of rate is refused with the options that read either
   };
   for (const Change& change : {Change{10000, 14000, 3001},
                                Change{25000, 40000, 1367},
-                               Change{40000, 25000, 500},
+                               Change{40000, 25000, 700},
                                Change{10000, 10400, 2000}}) {
     std::vector<std::int64_t> t = even(change.at, change.before);
     for (int i = 0; i < 2500; ++i) t.push_back(t.back() + change.after);
@@ -179,8 +179,22 @@ TEST_CASE("a lasting change of rate is refused with the options that read either
     CHECK(before.info.time.rate_hz ==
           Approx(1e6 / static_cast<double>(change.before)).epsilon(1e-3));
     CHECK(after.info.time.rate_hz == Approx(1e6 / static_cast<double>(change.after)).epsilon(1e-3));
-    CHECK(before.info.time.gaps + after.info.time.gaps == 0);
+    CHECK(before.info.time.gaps == 0);
+    CHECK(after.info.time.gaps == 0);
   }
+}
+
+TEST_CASE("a few hundred first rows at another rate are left out") {
+  std::vector<std::int64_t> t = even(400, 2560);
+  for (int i = 0; i < 3000; ++i) t.push_back(t.back() + 10000);
+  const Recording r = read_text(log_of(t));
+  CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-6));
+  CHECK(r.info.time.gaps == 0);
+  CHECK(r.info.rows_outside == Approx(400).margin(2));
+  CHECK(count(r, "rate_change") == 1);
+  ReadOptions options;
+  options.to_s = 1.02;
+  CHECK(read_text(log_of(t), options).info.time.rate_hz == Approx(390.625));
 }
 
 TEST_CASE("stamps too far away for a grid are refused with their distance") {

@@ -31,6 +31,19 @@ TEST_CASE("rows missing at random stand on a lattice, whatever their jitter") {
   CHECK(found.pattern == StampPattern::steps);
 }
 
+TEST_CASE(
+    "three rows of ten that are missing again and again are gaps, as exactly as steps are alike") {
+  std::uint64_t state = 1;
+  const auto random = [&] { return state = state * 6364136223846793005U + 1442695040888963407U; };
+  std::vector<std::int64_t> stamps;
+  for (std::int64_t i = 0; stamps.size() < 1025; ++i)
+    if (i % 10 > 2)
+      stamps.push_back(5000000 * i + static_cast<std::int64_t>((random() >> 40U) % 60000));
+  const StampModel found = model_of_stamps(stamps);
+  CHECK(found.ns == Approx(5e6).epsilon(1e-4));
+  CHECK(found.pattern == StampPattern::steps);
+}
+
 TEST_CASE("steps of unlike length in turns are no gaps") {
   std::vector<std::int64_t> stamps{0};
   for (int i = 0; i < 1000; ++i) stamps.push_back(stamps.back() + (i % 2 == 0 ? 280 : 720));

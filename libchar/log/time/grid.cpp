@@ -269,19 +269,18 @@ double TimeGrid::even_interval() {
 // Two rates make no grid: one of the stretches has to be chosen. A few rows at another rate are said
 // and, as are rows of which only each second or third is there, placed on the grid.
 void TimeGrid::judge_rate_change() {
-  constexpr std::uint64_t kShare = 50;  // of the rows
+  constexpr std::uint64_t kShare = 50, kRows = 64;
   if (step_.coarse) return;
   watch_.end();
-  double before = 1e9 / step_.ns, after = before / watch_.intervals(), at_ns = 0;
-  const bool odd = watch_.rows() > 0;
-  bool asks = odd && !watch_.whole() && kShare * watch_.rows() >= counts_.used;
-  if (odd && static_cast<double>(watch_.began_ns()) < 4 * watch_.intervals() * step_.ns) {
+  const OddRun& odd = watch_.longest();
+  double before = 1e9 / step_.ns, after = before / odd.intervals;
+  auto at_ns = static_cast<double>(odd.began_ns);
+  bool asks = odd.rows >= kRows && !odd.whole() && kShare * odd.rows >= counts_.used;
+  if (asks && at_ns - static_cast<double>(window_.from_ns) < 4 * odd.intervals * step_.ns) {
     std::swap(before, after);  // the first rows are the odd ones
-    at_ns = static_cast<double>(watch_.ended_ns()) + watch_.intervals() * step_.ns;
-  } else if (odd) {
-    at_ns = static_cast<double>(watch_.began_ns());
+    at_ns = static_cast<double>(odd.ended_ns) + odd.intervals * step_.ns;
   }
-  if (const auto change = sketch_.rate_change(); change && !asks && !(odd && watch_.whole())) {
+  if (const auto change = sketch_.rate_change(); change && !asks && odd.rows == 0) {
     asks = true;
     at_ns = change->row;
     before = 1e9 / change->before_ns;
@@ -301,12 +300,12 @@ void TimeGrid::judge_rate_change() {
          "",
          fmt::format("`to_s` {} reads what stands before it, `from_s` {} what follows", at, at)});
   }
-  if (odd)
+  if (odd.rows > 0)
     warnings_.add("rate_change",
                   fmt::format("the sampling rate changes ({} to {} Hz): the grid keeps the first",
                               brief_text(before, 6),
                               brief_text(after, 6)),
-                  watch_.place());
+                  odd.place);
 }
 
 void TimeGrid::finish(LogInfo& info) {

@@ -5,6 +5,8 @@
 // The interval comes from stamp_model.hpp, the rate from stamp_sketch.hpp; what becomes of a
 // stamp that does not fit is decided in time_repairs.cpp.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -55,6 +57,7 @@ class TimeGrid {
   void learn();
   std::vector<std::int64_t> first_stamps();
   void drop_wild_start(const std::vector<std::int64_t>& stamps);
+  void leave_out_first_rate(const std::vector<std::int64_t>& stamps);
   void refuse_without_axis(const std::vector<std::int64_t>& stamps);
   void say_pattern(const StampModel& found);
   double even_interval();
@@ -95,6 +98,15 @@ class TimeGrid {
                          std::string hint = "") const;
 
   struct Step {
+    Step() = default;
+    explicit Step(const StampModel& found)
+        : model(found),
+          ns(found.ns),
+          longest(static_cast<std::int64_t>(std::min(found.longest_step, 9e18))),
+          shortest(std::max<std::int64_t>(
+              1, static_cast<std::int64_t>(std::ceil(std::min(0.75 * ns, 9e18))))),
+          coarse(found.pattern != StampPattern::steps) {}
+    StampModel model;
     double ns = 0;
     std::int64_t longest = 0, shortest = 1;  ///< regular ones
     bool coarse = false;                     ///< stamps do not tell rows apart, one by one

@@ -13,6 +13,7 @@
 namespace libchar {
 namespace {
 
+constexpr std::size_t kEnough = 64;   // rows of a window that may say another interval
 constexpr std::size_t kLearn = 1025;  // rows whose stamps decide on dt
 
 }  // namespace
@@ -86,27 +87,45 @@ void TimeGrid::refuse_without_axis(const std::vector<std::int64_t>& stamps) {
        "`time_column` none and `rate_hz` HZ ignore the stamps");
 }
 
+// Rows at another rate than those of the longer rest stand in front of the window.
+void TimeGrid::leave_out_first_rate(const std::vector<std::int64_t>& stamps) {
+  const auto change = find_rate_change(stamps);
+  if (!change || 2 * change->row > static_cast<double>(stamps.size())) return;
+  const auto row = static_cast<std::size_t>(std::ceil(change->row));
+  const std::int64_t from = stamps[row] - stamps.front();
+  if (from <= window_.from_ns) return;
+  window_.from_ns = from;
+  const double seconds = std::round(static_cast<double>(from) * 1e-6) / 1e3;
+  warnings_.add(
+      "rate_change",
+      fmt::format("the sampling rate changes from {} to {} Hz: the first {} s are left out "
+                  "(`to_s` {} reads these)",
+                  brief_text(1e9 / change->before_ns, 5),
+                  brief_text(1e9 / change->after_ns, 5),
+                  shortest(seconds),
+                  shortest(seconds)));
+}
+
 // At the first row, and at the first one of a window that begins later: in front of it the rate may
 // be another.
 void TimeGrid::learn() {
   learned_ = true;
   if (!last_.any) drop_wild_start(first_stamps());
   const std::vector<std::int64_t> stamps = first_stamps();
+  if (!last_.any) leave_out_first_rate(stamps);
   const StampModel found = model_of_stamps(stamps, options_.rate_hz);
-  const bool coarse = found.pattern != StampPattern::steps;
   const bool begins = window_.from_ns <= 0 || last_.any;
-  if (!last_.any || (found.ns > 0 && std::fabs(found.ns - step_.ns) > 0.01 * step_.ns)) {
-    step_ = {found.ns, static_cast<std::int64_t>(std::min(found.longest_step, 9e18)), 1, coarse};
-    const auto whole = static_cast<std::int64_t>(std::min(step_.ns, 9e18));
-    step_.shortest =
-        std::max<std::int64_t>(1, whole - whole / 4);  // three quarters of it, rounded up
+  const bool other = stamps.size() >= kEnough && std::fabs(found.ns - step_.ns) > 0.01 * step_.ns;
+  if (!last_.any || other) step_ = Step(found);
+  if (other || watch_.longest().rows > 0 || sketch_.rate_change()) {  // of another rate
+    sketch_ = {};
+    recent_.clear();
+    watch_ = {};
   }
-  sketch_ = {};
-  watch_ = {};
   if (step_.ns == 0 && stamps.size() > 1) refuse_without_axis(stamps);
   if (!begins) return;
   window_.begun = true;
-  say_pattern(found);
+  say_pattern(step_.model);
   begin();
 }
 

@@ -13,7 +13,7 @@
 //      coarse   all steps are multiples of the clock's step q, and every stamp stands within a band
 //               of 1.5 q (2 q in longer logs) about one line: rounding moves a stamp by at most q,
 //               while rows missing at random lead away from every line like a random walk
-//      gaps     they are two or three steps long, exactly
+//      gaps     they are a few whole steps long, as exactly as the steps are alike
 //      packets, uneven   the stamps keep to one line, in long pieces no further than in short ones:
 //               most steps are short again and again after at most 40 rows, or of unlike length
 //      gaps     most are near multiples of the common step
@@ -272,9 +272,11 @@ StampPattern explanation(const FirstSteps& steps,
                       std::all_of(steps.rising.begin(), steps.rising.end(), [&](double step) {
                         return multiple_of(step, tick, 1e-3);
                       });
-  const double near = std::min(0.25, 0.02 + 2.5 * common.spread);
-  if (!coarse && share([&](double gap) { return gap < 3.5 && multiple_of(gap, 1, near); }) > 0.9)
-    return StampPattern::steps;
+  // Where steps are alike to a percent, longer gaps are known as exactly.
+  const double near = 0.02 + 2.5 * common.spread, longest = near <= 0.05 ? 20.5 : 3.5;
+  const double exact = near <= 0.05 ? near - 0.01 : std::min(0.25, near);
+  const auto whole = [&](double gap) { return gap < longest && multiple_of(gap, 1, exact); };
+  if (!coarse && share(whole) > 0.9) return StampPattern::steps;
   const double rows_a_gap =
       static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
   const bool in_packets =
@@ -354,14 +356,19 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps,
 StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz) {
   const FirstSteps steps = steps_of(stamps);
   if (steps.rising.empty()) return {};
-  std::vector<double> rows(stamps.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i);
-  const auto change = find_rate_change(rows, steps.line);
+  const auto change = find_rate_change(stamps);
   if (!change) return model_of_one_rate(stamps, steps, rate_hz);
   const auto at = stamps.begin() + static_cast<std::ptrdiff_t>(change->row);
   const bool later = 2 * change->row < static_cast<double>(stamps.size());
   const std::vector<std::int64_t> part(later ? at + 1 : stamps.begin(), later ? stamps.end() : at);
   return model_of_one_rate(part, steps_of(part), rate_hz);
+}
+
+std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stamps) {
+  const FirstSteps steps = steps_of(stamps);
+  std::vector<double> rows(steps.line.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<double>(i);
+  return find_rate_change(rows, steps.line);
 }
 
 std::optional<RateChange> find_rate_change(std::span<const double> rows,

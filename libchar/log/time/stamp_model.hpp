@@ -48,6 +48,9 @@ struct RateChange {
 std::optional<RateChange> find_rate_change(std::span<const double> rows,
                                            std::span<const double> instants);
 
+/// The same of stamps in file order, pauses and steps back left out.
+std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stamps);
+
 /// Rows that a row is late by, all of them together: a single late row whose followers are on time
 /// is no gap. `lags` starts with the row's own.
 std::int64_t common_lag(std::vector<double> lags);

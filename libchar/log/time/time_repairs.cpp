@@ -44,10 +44,13 @@ GridStretch gap_in_window(
   return inside;
 }
 
+bool OddRun::whole() const {
+  return intervals > 1.5 && std::fabs(intervals - std::round(intervals)) < 0.03 * intervals;
+}
+
 bool RateWatch::add(std::uint64_t row, double intervals, std::int64_t after_first_ns) {
   constexpr std::uint64_t kApart = 8;  // regular steps that end a run
-  const bool apart = row > last_row_ + kApart;
-  if (apart) end();
+  if (row > last_row_ + kApart) end();
   const bool first = steps_.empty();
   if (first) {
     first_row_ = row;
@@ -55,46 +58,39 @@ bool RateWatch::add(std::uint64_t row, double intervals, std::int64_t after_firs
   }
   last_row_ = row;
   last_ns_ = after_first_ns;
-  if (counted_ && std::fabs(intervals - intervals_) <= 0.25 * intervals_)
-    ended_ns_ = after_first_ns;
   steps_.push_back(intervals);
-  if (steps_.size() < kRun) return first;
-  count(0.25, 0.7);
-  steps_.clear();
-  return false;
+  if (steps_.size() == kTogether) count(0.25, 0.7);
+  return first && run_.rows == 0;
 }
 
 void RateWatch::end() {
-  if (steps_.size() >= kShortRun) count(0.1, 1);
+  if (run_.rows > 0 || steps_.size() >= kShortRun) count(0.1, 1);
   steps_.clear();
-  counted_ = false;
+  run_ = {};
 }
 
-// The steps are those of another rate where so many of them lie so near to the usual one.
+// The steps are those of another rate where so many of them lie so near to the usual one, and near to
+// those before.
 void RateWatch::count(double near, double share) {
+  if (steps_.empty()) return;
   const auto odd = static_cast<double>(steps_.size());
-  std::vector<double> steps = steps_;
+  std::vector<double> steps = std::exchange(steps_, {});
   const double usual = median_in_place(steps, Middle::lower);
   const auto alike =
-      static_cast<double>(std::count_if(steps_.begin(), steps_.end(), [&](double step) {
+      static_cast<double>(std::count_if(steps.begin(), steps.end(), [&](double step) {
         return std::fabs(step - usual) <= near * usual;
       }));
   const std::uint64_t rows = last_row_ - first_row_ + 1;
-  if ((usual <= 1.25 && usual >= 0.75) || alike < share * odd ||
-      odd < 0.7 * static_cast<double>(rows))
+  const bool other = usual > 1.25 || usual < 0.75;
+  const bool goes_on = run_.rows == 0 || std::fabs(usual - run_.intervals) <= 0.25 * run_.intervals;
+  if (!other || !goes_on || alike < share * odd || odd < 0.7 * static_cast<double>(rows)) {
+    run_ = {};
     return;
-  if (rows_ == 0) {
-    intervals_ = usual;
-    began_ns_ = first_ns_;
-    began_ = place_;
   }
-  rows_ += rows;
-  ended_ns_ = last_ns_;
-  counted_ = true;
-}
-
-bool RateWatch::whole() const {
-  return intervals_ > 1.5 && std::fabs(intervals_ - std::round(intervals_)) < 0.03 * intervals_;
+  if (run_.rows == 0) run_ = {0, usual, first_ns_, 0, place_};
+  run_.rows += rows;
+  run_.ended_ns = last_ns_;
+  if (run_.rows > longest_.rows) longest_ = run_;
 }
 
 std::string TimeGrid::place(const Pending& front, std::size_t row) const {

@@ -21,32 +21,37 @@ struct GridStretch {
 GridStretch gap_in_window(
     std::int64_t gap, double before_ns, double dt_ns, std::int64_t from_ns, std::int64_t to_ns);
 
-/// Steps that are none of the grid's: where many in a row have one length, that is another rate.
+/// Rows that follow each other in steps of one length, which is not the grid's.
+struct OddRun {
+  std::uint64_t rows = 0;
+  double intervals = 0;  ///< a step
+  std::int64_t began_ns = 0,
+               ended_ns =
+                   0;  ///< after the first stamp: the rows before the first and the last step
+  std::string place;   ///< of the former
+  /// Rows are left out, one or more in each step: the grid holds.
+  bool whole() const;
+};
+
+/// Where steps that are none of the grid's are another rate.
 class RateWatch {
  public:
-  /// An odd step that leads to this row, `after_first_ns` after the first stamp. True with the first
-  /// of a new run: its place is to be kept.
+  /// An odd step that leads to this row from one `after_first_ns` after the first stamp. True where it
+  /// may begin a run: its place is to be kept.
   bool add(std::uint64_t row, double intervals, std::int64_t after_first_ns);
   /// The run under way is over.
   void end();
   void keep_place(std::string place) { place_ = std::move(place); }
-  std::uint64_t rows() const { return rows_; }     ///< in all such runs
-  double intervals() const { return intervals_; }  ///< the step of the first one
-  std::int64_t began_ns() const { return began_ns_; }
-  std::int64_t ended_ns() const { return ended_ns_; }  ///< of the last one, its last row but one
-  const std::string& place() const { return began_; }
-  /// Rows are left out, one or more in each step: the grid holds.
-  bool whole() const;
+  const OddRun& longest() const { return longest_; }
 
  private:
   void count(double near, double share);
-  static constexpr std::size_t kRun = 32, kShortRun = 8;
-  std::vector<double> steps_;
-  std::uint64_t first_row_ = 0, last_row_ = 0, rows_ = 0;
-  std::int64_t first_ns_ = 0, last_ns_ = 0, began_ns_ = 0, ended_ns_ = 0;
-  double intervals_ = 0;
-  bool counted_ = false;  // the run under way
-  std::string place_, began_;
+  static constexpr std::size_t kTogether = 32, kShortRun = 8;
+  std::vector<double> steps_;  // not counted yet
+  std::uint64_t first_row_ = 0, last_row_ = 0;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;
+  std::string place_;
+  OddRun run_, longest_;
 };
 
 }  // namespace libchar

@@ -384,6 +384,7 @@ class TopicRows final : public RowSource {
   TableFront front() const {
     TableFront table;
     table.named = true;
+    if (const double rate = reader_->stated_rate_hz(topic_); rate > 0) table.stated_rate_hz = rate;
     for (const Channel& field : topic().fields) table.columns.push_back({field.name, field.unit});
     table.first_values = [this](std::size_t field) { return reader_->first_values(topic_, field); };
     return table;
