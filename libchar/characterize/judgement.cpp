@@ -151,9 +151,10 @@ struct Judge {
   }
 
   void look_at_samples(const ChannelQuality& q) {
-    const bool cut = has(q.findings, "saturated") || has(q.findings, "much_saturated");
-    if (cut) std::erase_if(out, [](const Finding& one) { return one.code == "rail"; });
     add_all(q.findings);
+    const bool cut = has(q.findings, "saturated") || has(q.findings, "much_saturated");
+    for (const Finding& one : channel.findings)
+      if (!cut || one.code != "rail") out.push_back(one);
     const double share = share_of(q.missing, q.samples + q.missing);
     if (!(share > kMostMissing)) return;
     add("missing_samples",
@@ -176,10 +177,10 @@ Tint tint_of(Rating rating) {
 }
 
 Judgement judge(const ChannelResult& channel) {
-  Judge found{channel, channel.findings};
+  Judge found{channel, {}};
+  found.look_at_samples(channel.quality);  // the rest may follow from them
   if (channel.fit) found.look_at_fit(*channel.fit);
   if (channel.verification) found.look_at_verification(*channel.verification);
-  found.look_at_samples(channel.quality);
   if (!channel.fit && worst_of(found.out) != Severity::bad)
     found.add("no_fit", "No noise coefficients were computed.");
   const Severity worst = worst_of(found.out);

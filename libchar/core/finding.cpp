@@ -120,7 +120,8 @@ std::string with_help(const Finding& one) {
   for (const Finding::Help& help : one.help) {
     std::string what = help.sentence;
     if (what.ends_with('.')) what.pop_back();
-    out += " " + printable(what + settings_text(help)) + ".";
+    out += (out.ends_with('.') || out.ends_with('?') ? " " : ". ") +
+           printable(what + settings_text(help)) + ".";
   }
   return out;
 }

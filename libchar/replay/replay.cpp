@@ -444,6 +444,7 @@ void Replay::add_facts(ReplayResult& out) const {
   out.reference_use = info.reference_use;
   out.faults = instants_.source().known_faults();
   out.warnings = scene_.warnings;
+  out.warnings.merge(instants_.source().info().samples_say);
   out.warnings.merge(plan_.warnings);
   out.inputs = inputs();
   out.alignment = aligned_;

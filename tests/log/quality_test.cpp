@@ -197,7 +197,7 @@ TEST_CASE("clocks, counters and sawteeth are named, noise and slow signals are n
   const auto counter_of = [&](auto&& value) {
     std::vector<double> y(n);
     for (std::size_t t = 0; t < n; ++t) y[t] = value(static_cast<double>(t));
-    return meter(y).counter;
+    return meter(y).signs.counter;
   };
   std::mt19937_64 random(4);
   std::normal_distribution<double> noise;
@@ -335,7 +335,7 @@ TEST_CASE("quality: parts joined are the record, wherever it is cut") {
         REQUIRE(b.repeats == a.repeats);
         REQUIRE(b.difference_kurtosis == Approx(a.difference_kurtosis).epsilon(1e-12));
         REQUIRE(b.difference_sd == Approx(a.difference_sd).epsilon(1e-12));
-        REQUIRE(b.counter == a.counter);
+        REQUIRE(b.signs.counter == a.signs.counter);
         REQUIRE(b.float32 == a.float32);
       }
 }

@@ -137,7 +137,10 @@ TEST_CASE("model file: what was no noise in the recording is data, and reads bac
   ramp.size = -3;
   ramp.slope = -1e-3;
   fit.events = {step, warm, ramp};
-  fit.moving_s = {{10, 20.5}, {30, 31}};
+  Finding moved = finding("motion", "The sensor was moved in 2 stretches.");
+  moved.where.time_s = {{10, 20.5}, {30, 31}};
+  moved.help = {{"Use the longest still stretch.", {{"still", "auto"}}}};
+  result.channels[0].findings = {moved};
   TemperatureEffect effect;
   effect.order = 2;
   effect.mean = 31;
@@ -152,8 +155,8 @@ TEST_CASE("model file: what was no noise in the recording is data, and reads bac
   CHECK(read.deterministic[0].at_s == 12.5);
   CHECK(read.deterministic[1].kind == DeterministicTerm::Kind::warm_up);
   CHECK(read.deterministic[2].per_s == -1e-3);
-  REQUIRE(read.moving_s.size() == 2);
-  CHECK(read.moving_s[0].high == 20.5);
+  REQUIRE(has(read.findings, "motion"));
+  CHECK(read.findings == m.findings);
   CHECK(read.bias == m.bias);
   CHECK(read.bias.tc2_per_k2 == -0.002);
   CHECK(read.bias.lag_s == 60);

@@ -151,7 +151,7 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
   starts("deterministic: [{kind: warm-up, size: 1, tau_s: 0}]\n", "5:");
   starts("deterministic: [{size: 1, at_s: 3}]\n", "5:");
   starts("deterministic: [{kind: stp, size: 1, at_s: 3}]\n", "5:24: error E0544");
-  starts("moving: [{from_s: 4, to_s: 3}]\n", "5:");
+  starts("findings: [{code: motion, severity: dire}]\n", "5:");
   CHECK(refusal("format: sensor-model\nversion: 1\nunit: m/s^2\nwhite_noise: {value: 1e308, unit: "
                 "\"g·√s\"}\n")
             .starts_with("m.yaml:4:14: error E0545: white_noise: is out of range"));

@@ -413,6 +413,24 @@ TEST_CASE("replay: a sensor that dies at once is left out of everything, with a 
   CHECK(std::isnan(named(blind, "mean").blind->leave_one_out[2]));
 }
 
+TEST_CASE("replay: a sensor that freezes is left out of everything, with its place") {
+  const test::SceneBench bench;
+  bench.put("five.csv", five_sensors(4000, [](int i, int k) {
+              return i == 2 && k >= 2000 ? std::string("0.125") : std::string("keep");
+            }));
+  const ReplayResult frozen = replay(bench.read(kFive));
+  REQUIRE(frozen.warnings.find("frozen_sensor") != nullptr);
+  CHECK_THAT(frozen.warnings.find("frozen_sensor")->where.rows.at(0),
+             Catch::StartsWith("c from 2"));
+  CHECK(std::isnan(named(frozen, "mean").blind->leave_one_out[2]));
+  // A fault that the scene puts in is there to be found.
+  bench.put("good.csv", five_sensors(4000, [](int, int) { return std::string("keep"); }));
+  const ReplayResult put_in =
+      replay(bench.read("format: scene\nversion: 1\nrecording: good.csv\nsensors: [a, b, c, d, e]\n"
+                        "faults: [{sensor: c, kind: stuck, from_s: 20, to_s: 30}]\n"));
+  CHECK(put_in.warnings.find("frozen_sensor") == nullptr);
+}
+
 TEST_CASE("replay: a sensor that repeats another one is named") {
   const test::SceneBench bench;
   bench.put("five.csv", five_sensors(3000, [](int, int) { return std::string("keep"); }));

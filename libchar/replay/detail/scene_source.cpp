@@ -8,6 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/spelling.hpp"
+#include "libchar/log/quality.hpp"
 #include "libchar/replay/detail/align/resampled.hpp"
 
 namespace libchar {
@@ -30,19 +31,35 @@ void note_presence(Presence& presence, std::uint64_t first, std::span<const doub
     if (!std::isfinite(values[k])) continue;
     if (presence.samples++ == 0) presence.first = first + k;
     presence.last = first + k;
+    presence.run = presence.run > 0 && values[k] == presence.value ? presence.run + 1 : 1;
+    presence.value = values[k];
+    if (presence.run <= presence.still) continue;
+    presence.still = presence.run;
+    presence.still_from = first + k + 1 - presence.run;
   }
+}
+
+// What makes the numbers of a sensor worthless: marks for missing values, a dead band, a wrapping phase.
+void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, Findings& to) {
+  for (const Finding& one : quality.findings)
+    if (one.severity == Severity::bad && one.code != "no_value")
+      to.add(one.code, with_help(one), sensor);
 }
 
 // The first reading, for length and rate, sees which channels have samples, and keeps them where they are few.
 struct FirstReading final : BlockSink {
   void begin(const LogInfo& log) override {
     channels.resize(log.channels.size());
+    meters.resize(log.channels.size());
     keeps = log.format == "csv";
   }
   void block(const SampleBlock& samples) override {
     channels.resize(std::max(channels.size(), samples.channels.size()));
-    for (std::size_t c = 0; c < samples.channels.size(); ++c)
+    meters.resize(channels.size());
+    for (std::size_t c = 0; c < samples.channels.size(); ++c) {
       note_presence(channels[c], samples.first, {samples.channels[c], samples.rows});
+      meters[c].push({samples.channels[c], samples.rows});
+    }
     keep(samples);
   }
   void keep(const SampleBlock& samples) {
@@ -58,6 +75,7 @@ struct FirstReading final : BlockSink {
     }
   }
   std::vector<Presence> channels;
+  std::vector<QualityMeter> meters;
   bool keeps = false;
   std::vector<std::vector<double>> kept;  // all or none
 };
@@ -224,9 +242,12 @@ void SceneSource::scan(Progress& progress) {
     const std::size_t column = column_of(log, wanted_[k], scene_->file, "recording");
     columns_.push_back(column);
     if (k >= own_) continue;
-    if (k < scene_->sensors.size())
-      info_.presence.push_back(column < first.channels.size() ? first.channels[column]
-                                                              : Presence{});
+    if (k < scene_->sensors.size()) {
+      const bool seen = column < first.channels.size();
+      info_.presence.push_back(seen ? first.channels[column] : Presence{});
+      if (seen)
+        note_bad_samples(first.meters[column].finish(), scene_->sensors[k].name, info_.samples_say);
+    }
     (k < scene_->sensors.size() ? info_.units : info_.reference_units)
         .push_back(log.channels[column].unit);
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/process/progress.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/scene/scene.hpp"
@@ -19,6 +20,9 @@ namespace libchar {
 /// Where a channel has samples.
 struct Presence {
   std::uint64_t first = 0, last = 0, samples = 0;  ///< grid points; samples 0: nowhere
+  std::uint64_t still_from = 0, still = 0;         ///< its longest run of one value
+  std::uint64_t run = 0;                           ///< of the last value
+  double value = 0;                                ///< the last one
 };
 
 struct SourceInfo {
@@ -29,6 +33,7 @@ struct SourceInfo {
   std::size_t further_axes = 0;              ///< that each sensor names beside its own
   std::vector<LogInfo> logs;                 ///< the recording; empty for a simulation
   std::vector<Presence> presence;            ///< of the sensors; empty for a simulation
+  Findings samples_say;                      ///< what makes the samples of sensors doubtful
   bool kept = false;                         ///< in memory, not read again for each pass
 };
 

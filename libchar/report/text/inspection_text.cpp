@@ -100,10 +100,8 @@ std::string remarks(const Inspection& inspection) {
   for (const Alike& kind : kinds) {
     const std::vector<std::string> others(kind.channels.begin() + 1, kind.channels.end());
     const std::string who = kind.same ? first_names(kind.channels) : kind.channels[0];
-    text += "  " + who + ": " + printable(kind.first->sentence);
-    if (!kind.same) text += " (alike: " + first_names(others) + ")";
-    for (const Finding::Help& help : kind.first->help) text += "; " + printable(help.sentence);
-    text += "\n";
+    text += "  " + who + ": " + with_help(*kind.first);
+    text += kind.same ? "\n" : " (alike: " + first_names(others) + ")\n";
   }
   return text;
 }
