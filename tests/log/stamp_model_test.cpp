@@ -44,6 +44,12 @@ TEST_CASE(
   CHECK(found.pattern == StampPattern::steps);
 }
 
+TEST_CASE("stamps of today in nanoseconds keep their last digit") {
+  std::vector<std::int64_t> stamps;
+  for (std::int64_t i = 0; i < 300; ++i) stamps.push_back(4611686018427387000 + 7 * i);
+  CHECK(model_of_stamps(stamps).ns == 7);
+}
+
 TEST_CASE("steps of unlike length in turns are no gaps") {
   std::vector<std::int64_t> stamps{0};
   for (int i = 0; i < 1000; ++i) stamps.push_back(stamps.back() + (i % 2 == 0 ? 280 : 720));

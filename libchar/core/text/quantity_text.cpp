@@ -115,7 +115,8 @@ double parse_rate_hz(std::string_view text) {
       "a sampling rate above zero such as 200Hz, 1.5kHz or 1/300, or an interval such as 5min (a "
       "bare number is in hertz)";
   const auto rate = [&] {
-    if (const std::size_t over = text.find('/'); over != std::string_view::npos) {
+    const std::size_t over = text.find('/');
+    if (over != std::string_view::npos && over > 0) {
       std::string_view under = text.substr(over + 1);
       if (under.ends_with("Hz")) under.remove_suffix(2);
       return with_unit(text.substr(0, over), {{"", 1}}, expected) / seconds_in(under, expected);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/log/time/recent_stamps.hpp"
 
 namespace libchar {
 namespace {
@@ -53,7 +54,7 @@ std::optional<ClockWrap> find_wrap(std::int64_t before_ns,
                                    std::int64_t stamp_ns,
                                    const TimeBase& clock,
                                    double interval_ns) {
-  const double back = static_cast<double>(stamp_ns) - static_cast<double>(before_ns);
+  const double back = step_between(before_ns, stamp_ns);
   if (clock.local) {
     const double step = back + static_cast<double>(kHour);
     if (step > 0 && step < 2.5 * interval_ns && back < 0)
@@ -99,12 +100,12 @@ std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clo
     std::vector<double> steps;
     bool rise = true;
     for (std::size_t k = i + 1; k < i + kTimes * i && rise; ++k) {
-      steps.push_back(static_cast<double>(stamps[k]) - static_cast<double>(stamps[k - 1]));
+      steps.push_back(step_between(stamps[k - 1], stamps[k]));
       rise = steps.back() > 0;
     }
     if (!rise) continue;
     const double usual = median_in_place(steps, Middle::lower);
-    const double step = static_cast<double>(stamps[i]) - static_cast<double>(stamps[i - 1]);
+    const double step = step_between(stamps[i - 1], stamps[i]);
     if (step > kFar * usual ||
         (step < -10 * usual && !find_wrap(stamps[i - 1], stamps[i], clock, usual)))
       wild = i;

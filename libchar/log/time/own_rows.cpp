@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/log/time/recent_stamps.hpp"
 
 namespace libchar {
 namespace {
@@ -42,7 +43,7 @@ void OwnRows::judge() {
   decided_ = true;
   std::vector<double> steps;
   for (std::size_t i = 1; i < kept_.size(); ++i)
-    steps.push_back(static_cast<double>(kept_[i]) - static_cast<double>(kept_[i - 1]));
+    steps.push_back(step_between(kept_[i - 1], kept_[i]));
   if (kept_.size() < kKept || 20 * (rows_ - kept_.size()) < rows_ ||
       10 * behind_blank_ < 3 * kept_.size())
     return;

@@ -39,10 +39,6 @@ double middle_of(std::vector<double> values) {
   return values.empty() ? 0 : median_in_place(values, Middle::lower);
 }
 
-double step_between(std::int64_t from, std::int64_t to) {
-  return static_cast<double>(to) - static_cast<double>(from);
-}
-
 /// The steps of the first stamps, pauses and steps back in time left out.
 struct FirstSteps {
   std::vector<double> rising;
