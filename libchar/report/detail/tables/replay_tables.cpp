@@ -55,7 +55,7 @@ Cell bias_cell(const ErrorScore& e) {
 }
 
 Cell ratio_cell(const AlgorithmResult& a) {
-  if (!a.ratio_to_best || !std::isfinite(a.ratio_to_best->low)) return "–";
+  if (!a.ratio_to_best || !std::isfinite(a.ratio_to_best->low)) return Cell::shown("–", kNone);
   return Cell::shown(interval_text(*a.ratio_to_best), a.ratio_to_best->low);
 }
 
