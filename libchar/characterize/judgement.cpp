@@ -181,8 +181,19 @@ Judgement judge(const ChannelResult& channel) {
   found.look_at_samples(channel.quality);  // the rest may follow from them
   if (channel.fit) found.look_at_fit(*channel.fit);
   if (channel.verification) found.look_at_verification(*channel.verification);
+  // Heavy tails of the differences are the alarm, and these are what it was about.
+  for (const char* cause : {"spikes_left_out",
+                            "spikes_kept",
+                            "heavy_tails",
+                            "held_values",
+                            "motion",
+                            "moves_throughout"})
+    if (has(found.out, cause))
+      std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
   if (!channel.fit && worst_of(found.out) != Severity::bad)
-    found.add("no_fit", "No noise coefficients were computed.");
+    found.add("no_fit",
+              found.out.empty() ? "No noise coefficients were computed."
+                                : "No noise coefficients: " + as_part(found.out[0].sentence) + ".");
   const Severity worst = worst_of(found.out);
   const Rating rating = worst == Severity::bad       ? Rating::bad
                         : worst == Severity::caution ? Rating::caution

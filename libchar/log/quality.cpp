@@ -324,9 +324,11 @@ class WrapWatch {
     const double usual = (all.s1 - sum_) / (all.n - count);
     // Jumps back over the end count against those over it.
     const double period = (size_ - usual * sum_ / size_ * count) / count;
+    // A step of noise across the end is larger than others by up to their deviation.
     const double rest = std::max(0.0, all.s2 - size_ * size_ / count) / all.n;
     signs.wraps = count_;
-    signs.period = with_digits(period, 3 * std::sqrt(rest / count) + 1e-9 * period);
+    signs.period =
+        with_digits(period, (1 + 3 / std::sqrt(count)) * std::sqrt(rest) + 1e-9 * period);
   }
   static void layout(auto& at, auto& w) {
     at(w.count_);

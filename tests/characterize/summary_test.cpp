@@ -174,7 +174,7 @@ TEST_CASE("summary: a misfit, a bad goodness, no fit are not to be used") {
 }
 
 TEST_CASE(
-    "summary: findings are phrases, the worst first; their sentences stand with the channel") {
+    "summary: findings are phrases, the worst first, and their sentences stand with the channel") {
   ChannelResult c = clean();
   c.findings = {finding("strength_change",
                         "The noise changes.",

@@ -362,7 +362,7 @@ TEST_CASE("a value that stands often and far from all others is a mark for missi
   CHECK(meter(clipped).signs.marks.empty());
 }
 
-TEST_CASE("a sawtooth wraps, with the period of its jumps; noise does not") {
+TEST_CASE("a sawtooth wraps, with the period of its jumps, and noise does not") {
   CHECK(meter(gaussian(20000, 1)).signs.wraps == 0);
   std::vector<double> phase = gaussian(20000, 1);
   double turns = 0;
@@ -383,7 +383,8 @@ TEST_CASE("a sawtooth wraps, with the period of its jumps; noise does not") {
 }
 
 TEST_CASE(
-    "a dead band is named, with its value and share; coarse rounding and held values are none") {
+    "a dead band is named, with its value and share, and coarse rounding and held values are "
+    "none") {
   std::vector<double> x = gaussian(50000, 1);
   for (double& v : x) v = std::fabs(v) < 1.5 ? 0.0 : v;
   const ChannelQuality q = meter(x);

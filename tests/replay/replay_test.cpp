@@ -450,7 +450,8 @@ TEST_CASE("replay: a sensor that repeats another one is named") {
 TEST_CASE("replay: the warm-up runs and is not scored") {
   const test::SceneBench bench;
   bench.put("five.csv", five_sensors(3000, [](int i, int k) {
-              return i == 0 && k < 500 ? std::string("100") : std::string("keep");
+              return i == 0 && k < 500 ? std::string(k % 2 == 0 ? "100" : "101")
+                                       : std::string("keep");
             }));
   const std::string scene = kFive + "reference: x\nalgorithms: [mean, median]\n";
   const ReplayResult all = replay(bench.read(scene)),

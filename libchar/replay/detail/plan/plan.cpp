@@ -134,15 +134,18 @@ constexpr double kLeastPresent = 1e-3;
 bool is_frozen(const Scene& scene,
                const std::vector<Presence>& presence,
                std::size_t i,
-               double run) {
+               double from,
+               double to) {
   constexpr double kShortest = 100, kShareOfRun = 0.01, kLongerThanOthers = 20;
   if (!scene.faults.empty() || presence.size() < 3) return false;
   std::vector<double> others;
   for (std::size_t k = 0; k < presence.size(); ++k)
     if (k != i) others.push_back(static_cast<double>(presence[k].still));
   const double usual = median_in_place(others, Middle::upper);
-  return static_cast<double>(presence[i].still) >
-         std::max({kShortest, kShareOfRun * run, kLongerThanOthers * usual});
+  const auto begins = static_cast<double>(presence[i].still_from);
+  const double inside =
+      std::min(to, begins + static_cast<double>(presence[i].still)) - std::max(from, begins);
+  return inside > std::max({kShortest, kShareOfRun * (to - from), kLongerThanOthers * usual});
 }
 
 std::string still_words(const std::string& name, const Presence& at, double rate_hz) {
@@ -166,7 +169,7 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene,
   const double from = sample(plan.run_from), to = sample(plan.run_to);
   for (std::size_t i = 0; i < source.presence.size(); ++i) {
     const Presence& at = source.presence[i];
-    if (is_frozen(scene, source.presence, i, to - from)) {
+    if (is_frozen(scene, source.presence, i, from, to)) {
       plan.warnings.add(
           "frozen_sensor",
           "sensors that stand still where the others move were left out of everything",
