@@ -833,7 +833,9 @@ void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
     cut.count = q.saturated;
     out.push_back(std::move(cut));
   }
-  const double rests = static_cast<double>(q.signs.at_rest) / static_cast<double>(q.samples);
+  // One long run is a sensor that froze; a dead band is entered again and again.
+  const std::uint64_t again = q.signs.at_rest - std::min(q.signs.at_rest, q.longest_stuck);
+  const double rests = static_cast<double>(again) / static_cast<double>(q.samples);
   if (rests > kDeadBand && q.distinct_values > 16 && q.minimum < q.signs.resting_value &&
       q.signs.resting_value < q.maximum) {
     Finding dead = finding(

@@ -153,5 +153,26 @@ with tempfile.TemporaryDirectory() as folder:
         expect(low - wider <= truth <= high + wider,
                f"{kind}: N {white['value']} [{low}, {high}] after {remedy[1]}, true {truth}")
 
+    # What makes samples worthless, and a sensor that freezes, are known to the replay of an array.
+    three = [[v + math.sin(i / 50) for i, v in enumerate(noise(6000))] for _ in range(3)]
+    array = here / "array.csv"
+
+    def replay(*options):
+        array.write_text("t[s],a,b,c\n" + "".join(
+            f"{i / RATE:.2f},{a:.4f},{b:.4f},{c:.4f}\n" for i, (a, b, c) in enumerate(zip(*three))))
+        ran = run("replay", array, "--sensors", "a,b,c", "--algorithms", "mean,median", "-o", here / "array", "--force",
+                  *options)
+        return ran.stderr, codes(json.loads((here / "array" / "report.json").read_text())["findings"])
+
+    expect(replay()[1] == [], f"array: a sound one has findings: {replay()}")
+    three[2][3000:] = [three[2][3000]] * 3000
+    said, found = replay()
+    expect(found == ["frozen_sensor"] and "c from 30" in said, f"array: a frozen sensor is not said: {said}")
+    three[0][::40] = [-999.0] * len(three[0][::40])
+    said, found = replay()
+    expect("missing_mark" in found and "--missing -999" in said, f"array: marks are not said: {said}")
+    said, found = replay("--missing", "-999")
+    expect("missing_mark" not in found and "missing_value" in found, f"array: --missing is not heard: {said}")
+
 print("\n".join(faults) or f"findings: {len(KINDS)} kinds travel, each remedy works")
 sys.exit(bool(faults))

@@ -394,6 +394,10 @@ TEST_CASE(
   std::vector<double> held = gaussian(50000, 1);
   for (std::size_t i = 0; i < held.size(); ++i) held[i] = held[i - i % 10];
   CHECK_FALSE(has(meter(held).findings, "dead_band"));
+  std::vector<double> frozen = gaussian(50000, 1);
+  std::fill(frozen.begin() + 20000, frozen.end(), frozen[20000]);
+  CHECK(has(meter(frozen).findings, "stuck"));
+  CHECK_FALSE(has(meter(frozen).findings, "dead_band"));
   std::vector<double> coarse = gaussian(50000, 1);
   for (double& v : coarse) v = std::round(v);
   CHECK_FALSE(has(meter(coarse).findings, "dead_band"));
