@@ -803,6 +803,8 @@ constexpr double kMostSaturated = 0.01;
 
 /// Share of samples at one value inside the range that no rounding of a noise gives.
 constexpr double kDeadBand = 0.3;
+/// At this share of repeats a run of sixteen comes by chance once in 10^15 samples.
+constexpr double kFewRepeats = 0.1;
 
 void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
   if (!q.signs.marks.empty()) {  // what else is odd about the ends is these
@@ -852,7 +854,10 @@ void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
   Finding stuck = finding(
       "stuck",
       fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck));
-  stuck.help.push_back({"Take what stands still as missing.", {{"frozen", "16"}}});
+  // Where values repeat anyway, as between coarse steps, runs of them are no sign.
+  if (static_cast<double>(q.repeats - std::min(q.repeats, q.longest_stuck)) <
+      kFewRepeats * static_cast<double>(q.samples))
+    stuck.help.push_back({"Take what stands still as missing.", {{"frozen", "16"}}});
   out.push_back(std::move(stuck));
 }
 

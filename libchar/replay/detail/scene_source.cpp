@@ -43,7 +43,7 @@ void note_presence(Presence& presence, std::uint64_t first, std::span<const doub
 void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, Findings& to) {
   for (const Finding& one : quality.findings)
     if (one.severity == Severity::bad && one.code != "no_value")
-      to.add(one.code, with_help(one), sensor);
+      to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one));
 }
 
 // The first reading, for length and rate, sees which channels have samples, and keeps them where they are few.
