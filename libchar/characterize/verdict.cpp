@@ -105,11 +105,13 @@ std::string unsaid_sentence(const Characterization& result,
                             Rating rating) {
   std::vector<std::string> names;
   std::string phrase;
+  bool one_reason = true;
   for (std::size_t c = 0; c < judged.size(); ++c) {
     if (judged[c].rating != rating) continue;  // what is not to be used is not used with caution
     const Severity severity = rating == Rating::bad ? Severity::bad : Severity::caution;
     if (const Finding* one = unsaid(judged[c], severity)) {
       names.push_back(result.channels[c].channel.name);
+      one_reason = one_reason && (names.size() == 1 || phrase == one->phrase);
       phrase = one->phrase;
     }
   }
@@ -118,7 +120,7 @@ std::string unsaid_sentence(const Characterization& result,
                      rating == Rating::bad ? "Do not use" : "Use",
                      judged.size() == 1 ? "it" : first_names(names),
                      rating == Rating::bad ? "" : " with caution",
-                     names.size() == 1 ? phrase : "see what is said of them");
+                     one_reason ? phrase : "see what is said of them");
 }
 
 }  // namespace

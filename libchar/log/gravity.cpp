@@ -65,8 +65,8 @@ Suspicion suspicion_of(double ratio) {
 void judge_gravity(std::span<const Channel> channels,
                    const std::function<ChannelQuality&(std::size_t)>& quality) {
   for (const Triad& triad : triads_of(channels)) {
-    const std::string& unit = channels[triad[0]].unit;
-    const double in_g = find_unit(unit)->to_si / kGravity;
+    const std::string unit = shown_unit(channels[triad[0]].unit);
+    const double in_g = find_unit(channels[triad[0]].unit)->to_si / kGravity;
     double mean = 0, scatter = 0;
     for (const std::size_t c : triad) {
       mean += std::pow(quality(c).mean * in_g, 2);

@@ -6,6 +6,7 @@
 
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/compare/verification.hpp"
+#include "libchar/characterize/verdict.hpp"
 #include "libchar/report/text/characterization_text.hpp"
 #include "tests/report/synthetic.hpp"
 
@@ -210,4 +211,14 @@ TEST_CASE("summary: the terminal says the sentence of the view") {
   REQUIRE(view.groups.size() == 2);
   CHECK(view.groups[0].title == "Angular rate");
   CHECK(view.groups[1].channels == std::vector<std::size_t>{3, 4, 5});
+}
+
+TEST_CASE("verdict: several channels with one reason say it, with unlike ones see each") {
+  Characterization result = test::synthetic_imu();
+  std::vector<Judgement> judged(result.channels.size());
+  for (std::size_t c : {std::size_t{0}, std::size_t{1}})
+    judged[c] = {Rating::bad, {finding("not_gravity", "The mean is 1.", "the mean is 1")}};
+  CHECK_THAT(verdict_of(result, judged), Contains(": the mean is 1."));
+  judged[1].findings[0].phrase = "the mean is 2";
+  CHECK_THAT(verdict_of(result, judged), Contains("see what is said of them"));
 }
