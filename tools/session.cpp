@@ -52,7 +52,7 @@ void report_warnings(Session& session, const libchar::LogInfo& info) {
   report_warnings(session, info.warnings, info.file);
 }
 
-void report_warnings(Session& session, const libchar::Warnings& warnings, const std::string& file) {
+void report_warnings(Session& session, const libchar::Findings& warnings, const std::string& file) {
   if (warnings.empty()) return;
   session.terminal.warn(warnings, file);
   session.warned_files.push_back(file);

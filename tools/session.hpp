@@ -25,7 +25,7 @@ struct Session {
 
 /// Says the warnings of one input on stderr and remembers them for --strict.
 void report_warnings(Session& session, const libchar::LogInfo& info);
-void report_warnings(Session& session, const libchar::Warnings& warnings, const std::string& file);
+void report_warnings(Session& session, const libchar::Findings& warnings, const std::string& file);
 
 /// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],
 /// "findings":[{file,code,severity,sentence,count,…}],"measured":{"work":{…}}}: the head of every --json

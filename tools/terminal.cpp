@@ -223,10 +223,10 @@ void Terminal::clear() {
   g_line_drawn = 0;
 }
 
-void Terminal::warn(const libchar::Warnings& warnings, std::string_view file) {
+void Terminal::warn(const libchar::Findings& warnings, std::string_view file) {
   if (quiet_) return;
   clear();
-  for (const libchar::Warning& warning : warnings.list())
+  for (const libchar::Finding& warning : warnings.list())
     say(with_flags(libchar::one_line(warning, file, colours(STDERR_FILENO))));
 }
 

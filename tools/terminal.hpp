@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/core/process/progress.hpp"
 #include "libchar/core/text/text_table.hpp"
-#include "libchar/core/warnings.hpp"
 
 namespace sensorchar {
 
@@ -70,7 +70,7 @@ class Terminal : public libchar::Progress {
   /// Removes the progress line, so that other text can stand there.
   void clear();
   /// Says every warning on one line each, with flags in place of the library's options (nothing when quiet).
-  void warn(const libchar::Warnings& warnings, std::string_view file);
+  void warn(const libchar::Findings& warnings, std::string_view file);
   /// A note on stderr, with flags as well (nothing when quiet).
   void note(const std::string& line);
 

@@ -13,7 +13,7 @@ namespace libchar {
 struct BenchInputs {
   std::vector<BenchSignal> signals;
   std::vector<Scene> scenes;
-  Warnings warnings;
+  Findings warnings;
 };
 
 struct BenchInputOptions {

@@ -66,7 +66,7 @@ void check_range(const std::string& path, StretchRange range, std::uint64_t leav
 
 /// What is the same whichever leaf a head was read with.
 void keep_head(LogInfo read, LogInfo& log) {
-  Warnings warnings = std::move(log.warnings);
+  Findings warnings = std::move(log.warnings);
   warnings.merge(read.warnings);
   log = std::move(read);
   log.warnings = std::move(warnings);

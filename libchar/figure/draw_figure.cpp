@@ -18,7 +18,7 @@ bool draws_with_cairo() {
 std::string draw_figure(const Chart& figure,
                         FigureFormat format,
                         const DrawingOptions& options,
-                        Warnings& warnings) {
+                        Findings& warnings) {
   if (format != FigureFormat::svg && !has_cairo())
     throw Error(
         {ErrorKind::usage,

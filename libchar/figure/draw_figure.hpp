@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libchar/core/document/enum_table.hpp"
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/figure/figure.hpp"
 
 namespace libchar {
@@ -48,7 +48,7 @@ bool draws_with_cairo();
 std::string draw_figure(const Chart& figure,
                         FigureFormat format,
                         const DrawingOptions& options,
-                        Warnings& warnings);
+                        Findings& warnings);
 
 /// As part of a page, on which no other figure says the same of itself: without a size of its own;
 /// where the pointer rests, it says what a curve or a mark is.

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/core/process/progress.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/fleet/manifest.hpp"
 #include "libchar/fleet/unit.hpp"
 
@@ -43,7 +43,7 @@ struct FleetPlan {
   /// Why logs above `split_bytes` are not divided, and whose; not in the file.
   std::map<std::string, std::set<std::size_t>> undivided;
   /// Logs that have warnings in front of their samples (an option that fits none of their channels); not in the file.
-  std::vector<std::pair<std::string, Warnings>> warned;
+  std::vector<std::pair<std::string, Findings>> warned;
 };
 
 /// Looks into every log, takes its digest where none is stated, and reads the limits. Throws

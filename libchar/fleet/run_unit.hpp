@@ -5,8 +5,8 @@
 #include <string>
 
 #include "libchar/core/document/enum_table.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/process/progress.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/fleet/unit.hpp"
 
 namespace libchar {
@@ -25,7 +25,7 @@ inline constexpr auto enum_table<UnitOutcome> =
 struct UnitRun {
   UnitOutcome outcome = UnitOutcome::done;
   std::string problem{};  ///< of no_result: why
-  Warnings warnings{};    ///< of a log that was read to its end
+  Findings warnings{};    ///< of a log that was read to its end
 };
 
 /// Computes what is missing of the unit and publishes it in `fleet`/results, whole or not at all.

@@ -21,7 +21,7 @@
 //   Eigen::MatrixXd weights() const;      n x r, as they stand now
 //   Eigen::VectorXd variances() const;    of a sample's noise, channel by channel, as estimated now
 //   const FaultLog& faults() const;
-//   void remarks(Warnings&) const;        what the reader of the result must know
+//   void remarks(Findings&) const;        what the reader of the result must know
 //   static bool looks_ahead(const Settings&);   and   void look(const Sample& y);
 //       true: it is shown all instants of the run before the first step, then finish_learning, then the
 //       steps of the same instants
@@ -39,8 +39,8 @@
 #include <limits>
 #include <span>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/present.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/fusion/array.hpp"
 #include "libchar/fusion/description.hpp"
 #include "libchar/fusion/fault_log.hpp"
@@ -131,7 +131,7 @@ concept HasFaults = requires(const A a) {
   { a.faults() } -> std::same_as<const FaultLog&>;
 };
 template <class A>
-concept HasRemarks = requires(const A a, Warnings& warnings) {
+concept HasRemarks = requires(const A a, Findings& warnings) {
   a.remarks(warnings);
 };
 

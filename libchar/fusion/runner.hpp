@@ -34,7 +34,7 @@ class Runner {
   virtual std::optional<Eigen::MatrixXd> weights() const = 0;
   virtual std::optional<Eigen::VectorXd> variances() const = 0;
   virtual const FaultLog* faults() const = 0;
-  virtual void remarks(Warnings& warnings) const = 0;
+  virtual void remarks(Findings& warnings) const = 0;
 };
 
 template <Algorithm A>
@@ -119,7 +119,7 @@ class RunnerOf final : public Runner {
     if constexpr (HasFaults<A>) return &algorithm_.faults();
     return nullptr;
   }
-  void remarks([[maybe_unused]] Warnings& warnings) const override {
+  void remarks([[maybe_unused]] Findings& warnings) const override {
     if constexpr (HasRemarks<A>) algorithm_.remarks(warnings);
   }
 

@@ -200,7 +200,7 @@ std::vector<double> scale_channels(std::vector<Channel>& channels,
 // A slip in the name of a channel must not pass.
 void warn_of_unused(const std::vector<Channel>& channels,
                     const ReadOptions& options,
-                    Warnings& warnings) {
+                    Findings& warnings) {
   for (const auto* words : {&options.channel_scale, &options.channel_unit})
     for (const std::string& word : *words)
       if (std::none_of(channels.begin(), channels.end(), [&](const Channel& channel) {
@@ -212,7 +212,7 @@ void warn_of_unused(const std::vector<Channel>& channels,
 }
 
 // Some quantities have units that no list has; a slip must not look like one of them.
-void warn_of_units(const ReadOptions& options, Warnings& warnings) {
+void warn_of_units(const ReadOptions& options, Findings& warnings) {
   std::vector<std::string> units = options.units;
   for (const std::string& word : options.channel_unit)
     units.push_back(word.substr(word.rfind('=') + 1));
@@ -369,7 +369,7 @@ void refuse_without_samples(const LogInfo& info, const ReadOptions& options) {
 void judge_values(const Watch& watch,
                   const LogInfo& info,
                   const ReadOptions& options,
-                  Warnings& warnings) {
+                  Findings& warnings) {
   if (info.samples == 0) return;
   const bool whole = !options.from_s && !options.to_s;
   if (whole && std::none_of(watch.seen.begin(), watch.seen.end(), std::identity{}))
@@ -393,7 +393,7 @@ void judge_values(const Watch& watch,
 namespace {
 
 /// The next rows, with what is marked as missing missing.
-bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, Warnings& warnings) {
+bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, Findings& warnings) {
   if (!source.next(block, warnings)) return false;
   for (const double mark : options.missing.marks)
     for (std::size_t c = 0; c < block.columns.size(); ++c) {
@@ -455,7 +455,7 @@ LogInfo read_rows(const std::string& path,
                  "cannot be read in stretches: " + why_not,
                  "",
                  "convert it to .npy first"});
-  Warnings warnings;
+  Findings warnings;
   Watch watch(sink, whole);
   TimeGrid grid(*source, whole, watch, warnings);
   RowBlock block;
@@ -480,7 +480,7 @@ LogInfo read_log(const std::string& log,
   check_rate_option(options);
   const std::string path = named_log_file(log);
   const auto source = open_rows(format_of(path, options), path, options);
-  Warnings warnings;
+  Findings warnings;
   Watch watch(sink, options);
   TimeGrid grid(*source, options, watch, warnings);
   RowBlock block;
@@ -549,7 +549,7 @@ StampedRows read_stamped_rows(const std::string& log,
   const std::string path = named_log_file(log);
   const auto source = open_rows(format_of(path, options), path, options);
   StampedRows out;
-  Warnings warnings;
+  Findings warnings;
   RowBlock block;
   while (next_rows(*source, options, block, warnings)) {
     const auto rows = static_cast<std::ptrdiff_t>(block.rows);

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/interval.hpp"
-#include "libchar/core/warnings.hpp"
 
 namespace libchar {
 
@@ -74,7 +74,7 @@ struct LogInfo {
   TimeBase time;
   /// what was used of the log, in seconds after its first stamp, where that is not all of it
   std::optional<Interval> stretch_s;
-  Warnings warnings;  ///< every repair, counted by kind with its first places
+  Findings warnings;  ///< every repair, counted by kind with its first places
   std::vector<std::string>
       guesses;  ///< what was inferred and not read, in sentences ("time unit: us, from the magnitude of the stamps")
   std::vector<std::string>

@@ -80,7 +80,7 @@ const Fields<LogTopic>& topic_fields() {
 
 void write_repairs(const Field& row, const DescribedRecording& recording, std::vector<Entry>& out) {
   Entry counts = part_entry(std::string(row.key), {});
-  for (const Warning& w : recording.info.warnings.list()) counts.below.push_back({w.code, w.count});
+  for (const Finding& w : recording.info.warnings.list()) counts.below.push_back({w.code, w.count});
   out.push_back(std::move(counts));
 }
 
@@ -172,13 +172,13 @@ const Fields<DescribedRecording>& recording_fields() {
 Json document_head(std::string_view format,
                    const std::vector<std::string>& command,
                    const std::vector<const LogInfo*>& logs,
-                   const Warnings& of_result) {
+                   const Findings& of_result) {
   DocumentHead head{std::string(format), std::string(version()), command, {}, {}};
   for (const LogInfo* log : logs) {
     head.input.push_back({log->file, log->sha256, log->bytes});
-    for (const Warning& w : log->warnings.list()) head.findings.push_back({log->file, w});
+    for (const Finding& w : log->warnings.list()) head.findings.push_back({log->file, w});
   }
-  for (const Warning& w : of_result.list()) head.findings.push_back({"", w});
+  for (const Finding& w : of_result.list()) head.findings.push_back({"", w});
   return document_of(document_head_fields(), head);
 }
 

@@ -36,7 +36,7 @@ const Fields<DocumentHead>& document_head_fields();
 Json document_head(std::string_view format,
                    const std::vector<std::string>& command,
                    const std::vector<const LogInfo*>& logs,
-                   const Warnings& of_result = {});
+                   const Findings& of_result = {});
 
 /// What `input` says of a small file that was read whole, a model or a report: its path, digest and size. Throws
 /// Error(input) where it cannot be read.

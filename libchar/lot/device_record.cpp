@@ -150,7 +150,7 @@ DeviceRecord record_of(const Characterization& result, SampleKind data) {
   out.sha256 = result.log.sha256;
   out.program = version();
   if (result.limits) out.limits = result.limits->verdict;
-  for (const Warning& warning : result.log.warnings.list())
+  for (const Finding& warning : result.log.warnings.list())
     out.warnings.push_back(sentence_of(warning));
   for (const ChannelResult& channel : result.channels) {
     out.channels.push_back(channel_record(channel, data));

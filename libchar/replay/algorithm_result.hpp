@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/interval.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/fusion/description.hpp"
 #include "libchar/fusion/options.hpp"
 #include "libchar/replay/error_meter.hpp"
@@ -83,7 +83,7 @@ struct AlgorithmResult {
   std::vector<FoundFault> faults;
   std::uint64_t faults_not_kept = 0;
   std::vector<FaultAnswer> answers;
-  Warnings remarks;
+  Findings remarks;
 };
 
 }  // namespace libchar

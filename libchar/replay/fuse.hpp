@@ -46,7 +46,7 @@ struct FuseResult {
   std::vector<LearntInput> inputs;
   std::vector<FusedSensor> sensors;  ///< of the file, those that were left out of it too
   std::vector<FoundFault> faults;
-  Warnings warnings;  ///< of the fusion; those of the log are in `log`
+  Findings warnings;  ///< of the fusion; those of the log are in `log`
 };
 
 /// Gives `sink` the inputs, their standard deviations, and a flag a sensor (1: in use, 0: taken out by the

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "libchar/core/document/entry.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/process/work.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/replay/algorithm_result.hpp"
 #include "libchar/replay/fusion_file.hpp"
@@ -74,7 +74,7 @@ struct ReplayResult : ReplayFacts {
   std::optional<std::size_t> best_sensor;   ///< of the smallest error; one input and a reference
   RunTracks tracks;
   LearntFusion learnt;  ///< of the array and of every algorithm that ran: what `fuse` applies
-  Warnings warnings;
+  Findings warnings;
   ReplayWork work;
   WorkDone counted{};  ///< all of it
   double seconds = 0;  ///< measured

@@ -15,7 +15,7 @@ namespace libchar {
 void read_recorded_signal(SignalSpec& signal,
                           const std::string& place,
                           const ArraySimulation& simulation,
-                          Warnings& warnings) {
+                          Findings& warnings) {
   if (signal.kind != "recording") return;
   const auto refuse = [&](const std::string& what, const std::string& hint) {
     throw Error({ErrorKind::usage, "E0721", place, what, signal.file, hint});

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 
 namespace libchar {
@@ -15,6 +15,6 @@ namespace libchar {
 void read_recorded_signal(SignalSpec& signal,
                           const std::string& place,
                           const ArraySimulation& simulation,
-                          Warnings& warnings);
+                          Findings& warnings);
 
 }  // namespace libchar

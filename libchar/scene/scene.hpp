@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/core/document/document.hpp"
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/simulate/fault.hpp"
 #include "libchar/simulate/sensor_array.hpp"
@@ -118,7 +118,7 @@ struct Scene {
   ScenePreparation preparation;
   std::vector<SceneAlgorithm> algorithms;  ///< empty: all whose needs the scene meets
   std::vector<std::string> files;          ///< every file that was named and found, resolved
-  Warnings warnings;
+  Findings warnings;
 };
 
 inline constexpr std::size_t kMostSensors = 10000;

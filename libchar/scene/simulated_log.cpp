@@ -68,8 +68,8 @@ SimulatedLog simulate_log(const ArraySimulation& simulation,
   return out;
 }
 
-Warnings late_faults(const ArraySimulation& simulation) {
-  Warnings warnings;
+Findings late_faults(const ArraySimulation& simulation) {
+  Findings warnings;
   const double end_s = static_cast<double>(simulation.samples) / simulation.rate_hz;
   for (const SensorFault& fault : simulation.faults)
     if (fault.from_s >= end_s)

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/core/process/progress.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/simulated_scene.hpp"
 #include "libchar/simulate/sensor_array.hpp"
@@ -29,6 +29,6 @@ SimulatedLog simulate_log(const ArraySimulation& simulation,
                           Progress& progress = no_progress());
 
 /// Of faults that begin after the end of the recording.
-Warnings late_faults(const ArraySimulation& simulation);
+Findings late_faults(const ArraySimulation& simulation);
 
 }  // namespace libchar

@@ -56,7 +56,7 @@ double stream(const std::string& path, const libchar::ReadOptions& options) {
   const auto start = Clock::now();
   const auto source = libchar::find_format("npy")->open(path, options);
   libchar::RowBlock block;
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   while (source->next(block, warnings)) {
   }
   if (options.hash) source->sha256();

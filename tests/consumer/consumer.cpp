@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   source.curves.push_back(libchar::source_curve("ramp", "m", curve));
   const auto format =
       libchar::draws_with_cairo() ? libchar::FigureFormat::pdf : libchar::FigureFormat::svg;
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   const libchar::Chart figure = libchar::make_figure({&source, 1}, {});
   return libchar::draw_figure(figure, format, {}, warnings).empty() ? 1 : 0;
 }

@@ -22,7 +22,7 @@ Chart allan_of(std::vector<SourceCurve> curves, FigureOptions options = {}) {
 }
 
 std::string svg_of_chart(const Chart& chart, const DrawingOptions& options = {}) {
-  Warnings warnings;
+  Findings warnings;
   return draw_figure(chart, FigureFormat::svg, options, warnings);
 }
 
@@ -114,7 +114,7 @@ TEST_CASE("the same figure gives the same bytes, in each format") {
   const Chart chart = allan_of({test::figure_curve("g", "deg/s")});
   for (const FigureFormat format : {FigureFormat::svg, FigureFormat::pdf, FigureFormat::png}) {
     if (format != FigureFormat::svg && !draws_with_cairo()) continue;
-    Warnings warnings;
+    Findings warnings;
     const std::string once = draw_figure(chart, format, {}, warnings);
     CHECK(once.size() > 1000);
     CHECK(once == draw_figure(chart, format, {}, warnings));
@@ -127,7 +127,7 @@ TEST_CASE("a PDF embeds its fonts, has one page of the size, its texts as texts 
     return;
   }
   const test::TemporaryFolder folder;
-  Warnings warnings;
+  Findings warnings;
   const std::string pdf =
       draw_figure(allan_of({test::figure_curve("g", "deg/s")}), FigureFormat::pdf, {}, warnings);
   CHECK(pdf.starts_with("%PDF-"));
@@ -157,7 +157,7 @@ TEST_CASE("a PNG is as large as its resolution says, and says it") {
     std::puts("SKIPPED: built without Cairo");
     return;
   }
-  Warnings warnings;
+  Findings warnings;
   DrawingOptions options;
   options.width_mm = 25.4 * 3;
   options.height_mm = 25.4 * 2;

@@ -76,7 +76,7 @@ TEST_CASE("every kind is drawn of a report, or says why it has none") {
              kind.word == "trace"));
       continue;
     }
-    Warnings warnings;
+    Findings warnings;
     CHECK(draw_figure(chart, FigureFormat::svg, {}, warnings).size() > 1000);
     // and of the other kind of report it is refused
     CHECK_THROWS_WITH(chart_of(kind.of_replay ? of_log : of_replay, std::string(kind.word)),
@@ -183,7 +183,7 @@ TEST_CASE("names that try to become part of the drawing stay names") {
   for (const SourceCurve& curve : source.curves) {
     FigureSource one = test::figure_source_of({curve, curve});
     one.curves[1].channel = "beside";
-    Warnings warnings;
+    Findings warnings;
     const std::string svg = draw_figure(
         chart_of(one, curve.is_allan ? "allan" : "psd"), FigureFormat::svg, {}, warnings);
     CHECK_THAT(svg, !Contains("<script") && !Contains("<img") && !Contains("\x01"));

@@ -140,7 +140,7 @@ TEST_CASE(
     }
     auto blind = test::make("blind-calibration", array, {{"gauge", 1}});
     CHECK(test::run(*blind, y).x.allFinite());
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     blind->remarks(warnings);
     CHECK(warnings.find("not_calibrated") == nullptr);
     CHECK((warnings.find("noise_bias") != nullptr) == !known);

@@ -85,7 +85,7 @@ TEST_CASE("blind-gls: a scene that stands still is the plain mean, and that is s
   for (double& v : y.reshaped()) v = 7 + gauss();
   auto blind = test::make("blind-gls", test::array(4));
   const Eigen::MatrixXd x = test::run(*blind, y).x;
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   blind->remarks(warnings);
   CHECK(warnings.find("not_calibrated") != nullptr);
   CHECK((x - y.colwise().mean()).cwiseAbs().maxCoeff() < 1e-12);

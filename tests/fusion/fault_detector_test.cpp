@@ -309,7 +309,7 @@ TEST_CASE("minque: three against three is said, and nobody is thrown out") {
   CHECK((doubt.one_side | doubt.other_side) == 0b111111);
   CHECK((doubt.one_side == 0b111 || doubt.other_side == 0b111));
   CHECK(doubt.sample >= 8000);
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   minque->remarks(warnings);
   CHECK(warnings.find("faults_ambiguous") != nullptr);
 }
@@ -418,7 +418,7 @@ TEST_CASE(
     if (since[i] >= 0) out[i] += 40000 - since[i];
     CHECK(out[i] < (told ? 1000 : 400));
   }
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   minque->remarks(warnings);
   if (told) CHECK(warnings.find("fault_watch_stood_down") != nullptr);
 }

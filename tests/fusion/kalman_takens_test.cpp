@@ -281,7 +281,7 @@ TEST_CASE("kalman-takens: what lives on repetition says so") {
     }
     auto fusion = test::make("kalman-takens", array);
     test::run(*fusion, y);
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     fusion->remarks(warnings);
     return warnings.find("input_repeats") != nullptr;
   };

@@ -107,7 +107,7 @@ TEST_CASE("least squares: what cannot be learnt is said") {
     dead->finish_learning();
     CHECK((*dead->weights())(1, 0) == 0);
     CHECK((*dead->weights())(0, 0) == 1);
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     dead->remarks(warnings);
     CHECK(warnings.find("channel_without_signal") != nullptr);
   }
@@ -144,7 +144,7 @@ namespace {
 /// Weights of five channels, the last ones made of the first three by `copy`.
 Eigen::VectorXd learnt_weights(Eigen::Index rows,
                                const std::function<void(Eigen::VectorXd&)>& copy,
-                               libchar::Warnings& warnings,
+                               libchar::Findings& warnings,
                                const std::string& name = "optimal-weights",
                                double level = 0) {
   test::Gaussian gauss(21);
@@ -177,7 +177,7 @@ TEST_CASE("least squares: one channel twice is one channel, however long the rec
   for (const Eigen::Index rows : {2000, 20000, 200000})
     for (const bool as_float : {false, true}) {
       INFO(rows << (as_float ? " as float" : ""));
-      libchar::Warnings warnings;
+      libchar::Findings warnings;
       const Eigen::VectorXd w = learnt_weights(
           rows,
           [&](Eigen::VectorXd& y) {
@@ -195,7 +195,7 @@ TEST_CASE("least squares: one channel twice is one channel, however long the rec
 TEST_CASE("least squares: channels made of others get the shortest weights") {
   for (const Eigen::Index rows : {2000, 200000}) {
     INFO(rows);
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     const Eigen::VectorXd w = learnt_weights(
         rows,
         [](Eigen::VectorXd& y) {
@@ -214,7 +214,7 @@ TEST_CASE("least squares: channels made of others get the shortest weights") {
 }
 
 TEST_CASE("least squares: good channels far from zero are no copies") {
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   test::Gaussian gauss(5);
   const Eigen::VectorXd w = learnt_weights(
       2000,

@@ -25,7 +25,7 @@ TEST_CASE("minque-published: 50-digit vector about the running mean") {
   CHECK(worst_v <= 1);
   CHECK(worst_w <= 1);
   CHECK(worst_x <= 1);
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   minque->remarks(warnings);
   REQUIRE(warnings.find("negative_variance") != nullptr);
   CHECK(warnings.find("negative_variance")->count == 220);

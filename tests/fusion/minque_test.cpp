@@ -140,7 +140,7 @@ TEST_CASE("minque: near the optimum, one input") {
     CHECK(regret_now < scene.regret);
     CHECK(regret_now > 1);
     CHECK(minque->faults()->events().empty());
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     minque->remarks(warnings);
     CHECK((warnings.find("variances_not_identifiable") != nullptr) ==
           (scene.name == "two good of five"));

@@ -223,7 +223,7 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
   const auto remarks = [](Eigen::Index channels) {
     Array array = test::array(channels);
     array.learning_samples = 1000;
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     test::make("perceptron", array)->remarks(warnings);
     return warnings;
   };
@@ -233,7 +233,7 @@ TEST_CASE("perceptron: a wide array gets fewer neurons and says so") {
   for (const double most : {300.0, 301.0, 312.0, 313.0}) {
     Array array = test::array(10);
     array.learning_samples = 1000;
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     test::make("perceptron", array, {{"neurons", 64}, {"most_weights", most}})->remarks(warnings);
     REQUIRE(warnings.find("perceptron_fewer_neurons") != nullptr);
     const int neurons = static_cast<int>((most - 1) / 12);

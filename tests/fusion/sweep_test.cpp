@@ -254,7 +254,7 @@ TEST_CASE("minque: variances that the data cannot tell apart are named") {
     const auto scene = test::noisy_scene("", variances, 5000);
     auto runner = test::make("minque", scene.array);
     test::run(*runner, scene.y);
-    Warnings warnings;
+    Findings warnings;
     runner->remarks(warnings);
     return warnings.find("variances_not_identifiable") != nullptr;
   };

@@ -273,7 +273,7 @@ TEST_CASE("tilt tuned: what has learnt nothing says nothing of it") {
     Array array = tilt_array();
     array.learning_samples = 1000;
     auto runner = test::make(name, array);
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     runner->remarks(warnings);
     CHECK(warnings.empty());
   }
@@ -310,7 +310,7 @@ TEST_CASE("tilt tuned: constants are said once they are learnt") {
     Array array = tilt_array();
     array.learning_samples = 300;
     auto runner = test::make(name, array);
-    libchar::Warnings before, after;
+    libchar::Findings before, after;
     runner->remarks(before);
     CHECK(before.empty());
     runner->learn(y.topRows(3), y.bottomRows(1));

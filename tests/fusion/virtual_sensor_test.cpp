@@ -216,7 +216,7 @@ TEST_CASE("virtual-sensor: several inputs are those of generalized least squares
   const test::Run a = test::run(*ours, scene.y, 2), b = test::run(*fixed, scene.y, 2);
   CHECK((a.x - b.x).cwiseAbs().maxCoeff() < 1e-10);
   CHECK((a.variance - b.variance).cwiseAbs().maxCoeff() < 1e-12);
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   ours->remarks(warnings);
   CHECK(warnings.find("no_drift") != nullptr);
 }
@@ -225,7 +225,7 @@ TEST_CASE("virtual-sensor: it says when it looks ahead, and when there is no dri
   const auto remarked = [](double smoothed, double flicker) {
     const Array array =
         drifting_array(std::vector<NoiseModel>(3, NoiseModel{0.01, flicker, 0, {}}), 100);
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     test::make("virtual-sensor", array, {{"smoothed", smoothed}})->remarks(warnings);
     return std::pair{warnings.find("looks_ahead") != nullptr, warnings.find("no_drift") != nullptr};
   };
@@ -314,7 +314,7 @@ TEST_CASE("virtual-sensor: who looks ahead says so, who does not does not") {
     array.rate_hz = 10;
     array.noise_levels = Eigen::Vector2d(0.01, 0.04);
     array.noise_models = {{0.01, 0, 0.1, {}}, {0.04, 0, 0, {}}};
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     test::make("virtual-sensor", array, {{"smoothed", smoothed}})->remarks(warnings);
     CHECK((warnings.find("looks_ahead") != nullptr) == (smoothed == 1));
   }

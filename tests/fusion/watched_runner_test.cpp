@@ -128,7 +128,7 @@ TEST_CASE("watched: two sensors cannot be told, and it is said") {
                   off = test::run(*watched(algorithm("mean"), scene, false), scene.y, 1, 500);
   CHECK(on.x == off.x);
   CHECK(runner->faults()->events().empty());
-  Warnings warnings;
+  Findings warnings;
   runner->remarks(warnings);
   CHECK(warnings.find("faults_not_watched") != nullptr);
 }

@@ -49,7 +49,7 @@ std::string outcome(const std::string& path, const ReadOptions& options) {
   std::string said;
   try {
     const LogInfo info = read_log(path, options, digest);
-    for (const Warning& warning : info.warnings.list()) said += one_line(warning, "") + "\n";
+    for (const Finding& warning : info.warnings.list()) said += one_line(warning, "") + "\n";
     for (const auto* notes : {&info.guesses, &info.dialect})
       for (const std::string& note : *notes) said += note + "\n";
     for (const Channel& channel : info.channels)

@@ -48,7 +48,7 @@ std::string tags_of(const std::string& svg) {
 }
 
 void draw(const Chart& figure) {
-  Warnings warnings;
+  Findings warnings;
   const std::string svg = draw_figure(figure, FigureFormat::svg, {}, warnings);
   const std::string tags = tags_of(svg);
   for (const char* none : {"nan", "inf"})

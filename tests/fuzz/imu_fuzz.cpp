@@ -17,7 +17,7 @@ std::string read(const std::string& path, const char* preset, std::size_t block_
   try {
     const auto source = libchar::find_format("imu")->open(path, options);
     libchar::RowBlock block;
-    libchar::Warnings warnings;
+    libchar::Findings warnings;
     std::uint64_t rows = 0, hash = 0;
     while (source->next(block, warnings)) {
       for (std::size_t c = 0; c < block.columns.size(); ++c)

@@ -21,7 +21,7 @@ Sum read(const std::string& path, std::size_t block_bytes) {
   options.hash = false;
   const auto source = libchar::find_format("npy")->open(path, options);
   libchar::RowBlock block;
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   Sum sum;
   while (source->next(block, warnings)) {
     sum.rows += block.rows;

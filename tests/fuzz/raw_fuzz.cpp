@@ -35,7 +35,7 @@ std::uint64_t read(std::size_t block_bytes) {
   options.hash = false;
   const auto source = libchar::find_format("raw")->open(base(), options);
   libchar::RowBlock block;
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   std::uint64_t sum = 0;
   while (source->next(block, warnings)) {
     sum += block.rows;

@@ -47,7 +47,7 @@ std::string outcome(const std::string& bytes, const char* format, std::size_t bl
           " rate " + fuzz::bits(info.time.rate_hz) + " start " +
           std::to_string(info.time.start_ns.value_or(0)) + " gaps " +
           std::to_string(info.time.gaps);
-    for (const Warning& warning : info.warnings.list())
+    for (const Finding& warning : info.warnings.list())
       end += " " + warning.code + " " + std::to_string(warning.count);
   } catch (const Error& error) {
     fuzz::said(error);

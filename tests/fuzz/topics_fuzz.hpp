@@ -33,7 +33,7 @@ inline TopicSum read_topic(const libchar::Format& format,
   const bool stamped = !reader->stamps(topic).empty();
   reader->select(topic, all, std::nullopt, 1);
   TopicSum sum;
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   for (;;) {
     libchar::RowBlock block;
     block.columns.resize(fields);

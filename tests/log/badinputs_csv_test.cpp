@@ -124,7 +124,7 @@ TEST_CASE("every bad CSV input gets its verdict, place and reason") {
           CHECK(recording.info.samples == 1);
           continue;
         }
-        for (const Warning& warning : recording.info.warnings.list()) {
+        for (const Finding& warning : recording.info.warnings.list()) {
           verdict = "warn";
           said += one_line(warning, path) + "\n";
           for (const std::string& p : warning.where.rows) places.push_back(as_place(p));

@@ -49,7 +49,7 @@ TEST_CASE("a caller may stop at any chunk, and the hash is that of the whole fil
     for (const int chunks : {0, 1, 5, 30}) {
       const auto rows = find_format("csv")->open(path, small_chunks(threads));
       RowBlock block;
-      Warnings warnings;
+      Findings warnings;
       for (int i = 0; i < chunks; ++i) REQUIRE(rows->next(block, warnings));
       CHECK(rows->sha256() == hash_of(text));
       CHECK_FALSE(rows->next(block, warnings));
@@ -67,7 +67,7 @@ TEST_CASE("a caller may stop at any moment: the threads that read ahead end") {
     options.hash = turn % 2 == 0;
     const auto rows = find_format("csv")->open(path, options);
     RowBlock block;
-    Warnings warnings;
+    Findings warnings;
     for (int i = 0; i < turn % 7; ++i) REQUIRE(rows->next(block, warnings));
     const volatile int waits = turn * 37 % 1000;
     for (int i = 0; i < waits; ++i) std::atomic_signal_fence(std::memory_order_seq_cst);
@@ -80,7 +80,7 @@ TEST_CASE("a bad row far down is thrown in its turn, after every row before it")
   for (const int threads : {1, 2, 8}) {
     const auto rows = find_format("csv")->open(path, small_chunks(threads));
     RowBlock block;
-    Warnings warnings;
+    Findings warnings;
     std::size_t read = 0;
     std::string problem;
     try {

@@ -357,7 +357,7 @@ TEST_CASE("values, warnings and errors depend on neither block size nor threads"
     std::string said;
     try {
       const Recording r = read_recording(path, options);
-      for (const Warning& w : r.info.warnings.list()) said += one_line(w, "") + "\n";
+      for (const Finding& w : r.info.warnings.list()) said += one_line(w, "") + "\n";
       said += fmt::format("{} {} {} {} {}",
                           r.info.rows,
                           r.info.samples,

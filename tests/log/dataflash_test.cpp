@@ -45,7 +45,7 @@ std::string bin_channels(const LogInfo& info) {
 }
 
 std::uint64_t bin_warnings(const LogInfo& info, std::string_view code) {
-  const Warning* found = info.warnings.find(code);
+  const Finding* found = info.warnings.find(code);
   return found == nullptr ? 0 : found->count;
 }
 

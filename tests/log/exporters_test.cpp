@@ -49,7 +49,7 @@ std::string said_by(const LogInfo& info) {
   std::string out;
   for (const auto& text : info.dialect) out += text + "\n";
   for (const auto& text : info.guesses) out += text + "\n";
-  for (const Warning& w : info.warnings.list()) out += w.code + ": " + w.sentence + "\n";
+  for (const Finding& w : info.warnings.list()) out += w.code + ": " + w.sentence + "\n";
   return out;
 }
 

@@ -30,7 +30,7 @@ inline std::string failure(const std::string& text, libchar::ReadOptions options
 }
 
 inline std::uint64_t count(const libchar::Recording& recording, const char* code) {
-  const libchar::Warning* warning = recording.info.warnings.find(code);
+  const libchar::Finding* warning = recording.info.warnings.find(code);
   return warning == nullptr ? 0 : warning->count;
 }
 

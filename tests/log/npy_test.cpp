@@ -66,7 +66,7 @@ TEST_CASE(
     std::memcpy(data.data(), values.data(), data.size());
     std::ofstream(path, std::ios::binary) << npy(literal, data);
     const test::Rows rows = test::read_rows("npy", path);
-    const Warning* warning = rows.warnings.find("rounded_integer");
+    const Finding* warning = rows.warnings.find("rounded_integer");
     return warning == nullptr ? 0 : warning->count;
   };
   const std::uint64_t one = 1, edge = one << 53U;
@@ -88,7 +88,7 @@ TEST_CASE("a file that becomes shorter while it is read is told with the byte wh
   const auto source = find_format("npy")->open(path, options);
   std::filesystem::resize_file(path, 10 + literal.size() + 4001);
   RowBlock block;
-  Warnings warnings;
+  Findings warnings;
   const std::string end = "(byte " + std::to_string(10 + literal.size() + 4001) + ")";
   CHECK_THROWS_WITH(
       ([&] {
@@ -224,7 +224,7 @@ TEST_CASE("block size and hashing never change what is read") {
 TEST_CASE("a reading that is given up does not wait for the rest") {
   const auto source = find_format("npy")->open(test::fixture("npy/c_order.npy").string(), {});
   RowBlock block;
-  Warnings warnings;
+  Findings warnings;
   CHECK(source->next(block, warnings));
   CHECK(source->place(block, 2, 0) == "row 2 (byte 176)");
 }

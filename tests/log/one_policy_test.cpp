@@ -65,7 +65,7 @@ struct Fate {
 };
 
 std::uint64_t counted(const LogInfo& info, const char* code) {
-  const Warning* const warning = info.warnings.find(code);
+  const Finding* const warning = info.warnings.find(code);
   return warning == nullptr ? 0 : warning->count;
 }
 
@@ -81,7 +81,7 @@ Fate fate_of(const std::string& path, const ReadOptions& options = {}) {
   try {
     const Recording recording = read_recording(path, options);
     check_account_of(recording.info);
-    for (const Warning& warning : recording.info.warnings.list())
+    for (const Finding& warning : recording.info.warnings.list())
       fate.warnings[warning.code] = warning.count;
     fate.samples = recording.samples;
     fate.rate_hz = recording.info.time.rate_hz;

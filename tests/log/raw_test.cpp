@@ -180,7 +180,7 @@ TEST_CASE("a block keeps to its bytes, stamps included, and progress is that of 
     options.block_bytes = 64;
     const auto source = find_format("raw")->open(raw.path, options);
     RowBlock block;
-    Warnings warnings;
+    Findings warnings;
     for (const std::size_t rows : {4UL, 8UL}) {
       REQUIRE(source->next(block, warnings));
       CHECK(block.rows == 4);

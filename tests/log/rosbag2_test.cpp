@@ -104,7 +104,7 @@ TEST_CASE("rosbag2: topics of the parts are merged by name and type") {
   const test::Rows odd =
       test::read_rows("rosbag2", folder / "metadata.yaml", test::of_topic("/odd"), true);
   CHECK(odd.time_ns.size() == 20);
-  const Warning* const lost = odd.warnings.find("unreadable_part");
+  const Finding* const lost = odd.warnings.find("unreadable_part");
   REQUIRE(lost != nullptr);
   CHECK(lost->count == 20);
   CHECK(lost->where.rows.front() == "humble.db3: the log has no definition of this type");

@@ -218,7 +218,7 @@ TEST_CASE("stamps of every cause, unit, jitter and gap: the right rate and no ga
             continue;
           }
           std::string said;
-          for (const Warning& warning : r.info.warnings.list())
+          for (const Finding& warning : r.info.warnings.list())
             said += fmt::format("{} x {}; ", warning.count, warning.code);
           INFO(said);
           CHECK(r.info.time.rate_hz == Approx(truth.rate_hz).epsilon(1e-3));

@@ -76,7 +76,7 @@ struct MemoryReader final : TopicReader {
     time = time_field;
     unit = wanted_unit.ns;
   }
-  bool next(RowBlock& block, std::size_t most, Warnings&) override {
+  bool next(RowBlock& block, std::size_t most, Findings&) override {
     for (; at < rows.size() && block.rows < most; ++at, ++block.rows) {
       for (std::size_t c = 0; c < wanted.size(); ++c)
         block.columns[c].push_back(rows[at][wanted[c]]);
@@ -96,7 +96,7 @@ struct Opened {
   std::unique_ptr<RowSource> rows;
   std::vector<std::vector<double>> columns;
   std::vector<std::int64_t> stamps;
-  Warnings warnings;
+  Findings warnings;
 
   Opened(std::unique_ptr<TopicReader> reader, const ReadOptions& options) {
     const std::string path = (folder / "a.bag").string();

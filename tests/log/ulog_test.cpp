@@ -42,7 +42,7 @@ ReadOptions of_topic(const std::string& topic, std::vector<std::string> channels
 }
 
 std::uint64_t count_of(const LogInfo& info, std::string_view code) {
-  const Warning* found = info.warnings.find(code);
+  const Finding* found = info.warnings.find(code);
   return found == nullptr ? 0 : found->count;
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("ULog: instances, nested messages, arrays, padding and every type by v
   CHECK(std::isnan(imu.samples[0][61]));
   CHECK(imu.samples[2][100] == ulog_f32(flight_count(100, 5) * 1e-6));
   CHECK(imu.samples[3][100] == ulog_f32(flight_count(100, 7) * 1e-4));
-  const Warning* dropout = imu.info.warnings.find("dropout");
+  const Finding* dropout = imu.info.warnings.find("dropout");
   REQUIRE(dropout != nullptr);
   CHECK(dropout->count == 2);
   CHECK(dropout->sentence.find("23 ms in all") != std::string::npos);
@@ -228,7 +228,7 @@ TEST_CASE("ULog: every cut of one message says how many bytes were left out") {
     const test::MemoryLog log(std::string_view(whole).substr(0, whole.size() - 11 - less));
     const Recording cut = read_recording(log.path());
     CHECK(cut.info.rows == all.info.rows - 1);
-    const Warning* said = cut.info.warnings.find("cut_message");
+    const Finding* said = cut.info.warnings.find("cut_message");
     REQUIRE(said != nullptr);
     CHECK(said->sentence.find(fmt::format("its last {} bytes", 49 - less)) != std::string::npos);
   }

@@ -86,7 +86,7 @@ TEST_CASE("budget: leave-one-out on stretches tells what it tells on all of the 
     CHECK(named(part, "mean").rmse == named(all, "mean").rmse);
     CHECK(part.best == all.best);
     CHECK_FALSE(all.warnings.find("leave_one_out_budget"));
-    const Warning* warning = part.warnings.find("leave_one_out_budget");
+    const Finding* warning = part.warnings.find("leave_one_out_budget");
     REQUIRE(warning);
     CHECK_THAT(warning->where.rows.at(0), Contains("kalman-takens: on 16 stretches"));
     CHECK(said(part.plan, "leave-one-out of kalman-takens: on 16 stretches"));

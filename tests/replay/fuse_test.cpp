@@ -347,7 +347,7 @@ TEST_CASE("fuse: a sensor that is noisier than where it was learnt is named") {
     bench.bench.put("new.csv", four_sensors(o));
     KeptColumns kept;
     const FuseResult fused = bench.fuse_log(kept, by("least-squares"), "new.csv");
-    const Warning* warning = fused.warnings.find(code);
+    const Finding* warning = fused.warnings.find(code);
     return warning == nullptr ? "" : warning->where.rows[0];
   };
   CHECK(warned({.rows = 8000, .seed = 21}, "noise_changed").empty());
@@ -376,11 +376,11 @@ TEST_CASE("fuse: no sensor of the same noise is called noisier in 200 logs") {
   const auto learnt = noise(20000, 1);
   int alarms = 0, found = 0;
   for (int k = 0; k < 200; ++k) {
-    Warnings same, other;
+    Findings same, other;
     warn_of_noise(names, learnt, noise(4000, 1), same);
     warn_of_noise(names, learnt, noise(4000, 2), other);
     alarms += same.empty() ? 0 : 1;
-    const Warning* warning = other.find("noise_changed");
+    const Finding* warning = other.find("noise_changed");
     found += warning != nullptr && warning->where.rows.size() == 1 &&
                      warning->where.rows[0].starts_with("a is")
                  ? 1

@@ -16,7 +16,7 @@ struct RecordedLog {
   test::TemporaryFolder folder;
   std::string path = (folder / "log.csv").string();
   ArraySimulation simulation;
-  Warnings warnings;
+  Findings warnings;
 
   RecordedLog() {
     std::ofstream(path) << "t[s],x[deg/s],y[deg/s]\n0,1,5\n0.01,2,6\n0.02,4,7\n";

@@ -14,7 +14,7 @@ struct Rows {
   libchar::LogInfo info;
   std::vector<std::vector<double>> columns;
   std::vector<std::int64_t> time_ns;
-  libchar::Warnings warnings;
+  libchar::Findings warnings;
   std::string sha256;
   std::size_t blocks = 0;
 };

@@ -246,7 +246,7 @@ py::dict recording_dict(Recording&& recording) {
   out["start_ns"] = recording.info.time.start_ns;
   out["info"] = to_python(with_valid_text(recording_json(recording.info, {})));
   py::list warnings;
-  for (const Warning& warning : recording.info.warnings.list())
+  for (const Finding& warning : recording.info.warnings.list())
     warnings.append(one_line(warning, recording.info.file));
   out["warnings"] = warnings;
   return out;

@@ -121,7 +121,7 @@ void run_plot(Session& session, PlotVerb& verb) {
   for (const std::string& file : verb.files) sources.push_back(read_figure_source(file));
   const Chart figure = make_figure(sources, verb.figure);
   std::vector<OutputFile> made;
-  Warnings warnings;
+  Findings warnings;
   if (!verb.output.empty())
     made.push_back({verb.output, draw_figure(figure, format, verb.drawing, warnings)});
   if (!verb.gnuplot.empty()) made.push_back({verb.gnuplot, figure_gnuplot(figure, verb.drawing)});

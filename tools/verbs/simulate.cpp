@@ -10,9 +10,9 @@
 
 #include "help/fault_help.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/log/write.hpp"
@@ -78,7 +78,7 @@ void read_recorded(const SimulateVerb& verb,
                    SignalSpec& signal,
                    const std::string& option,
                    const ArraySimulation& simulation,
-                   Warnings& warnings) {
+                   Findings& warnings) {
   if (signal.kind == "recording")
     for (const std::string& output : {verb.output, verb.scene_path})
       refuse_same_file(signal.file, output);
@@ -112,7 +112,7 @@ void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& 
   simulation.deterministic = verb.deterministic;
   set_signals(verb, simulation);
   add_faults(verb, simulation);
-  Warnings warnings;
+  Findings warnings;
   if (!verb.truth.empty())
     read_recorded(verb, simulation.truth[0], "--truth", simulation, warnings);
   if (!verb.temperature.empty())

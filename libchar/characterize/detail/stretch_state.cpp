@@ -50,7 +50,7 @@ void write_log(const LogInfo& log, StateWriter& to) {
   to.texts(log.guesses);
   to.texts(log.dialect);
   to.number(log.warnings.list().size());
-  for (const Warning& warning : log.warnings.list()) {
+  for (const Finding& warning : log.warnings.list()) {
     to.text(warning.code);
     to.text(warning.sentence);
     to.number(warning.count);
@@ -58,7 +58,7 @@ void write_log(const LogInfo& log, StateWriter& to) {
   }
 }
 
-void read_warnings(StateReader& from, Warnings& warnings) {
+void read_warnings(StateReader& from, Findings& warnings) {
   for (std::size_t left = from.count(32); left > 0; --left) {
     const std::string code = from.text(), message = from.text();
     const std::uint64_t count = from.number();

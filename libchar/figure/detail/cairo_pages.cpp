@@ -68,7 +68,7 @@ Face face_of(bool bold, std::string& family) {
   return Face(cairo_ft_font_face_create_for_pattern(found.get()));
 }
 
-Faces faces_of(Warnings& warnings) {
+Faces faces_of(Findings& warnings) {
   Faces out;
   std::string plain, bold;
   out.plain = face_of(false, plain);
@@ -233,7 +233,7 @@ bool has_cairo() {
   return true;
 }
 
-std::string pdf_of(const Drawing& drawing, Warnings& warnings) {
+std::string pdf_of(const Drawing& drawing, Findings& warnings) {
   const Faces faces = faces_of(warnings);
   std::string out;
   const Surface surface(
@@ -254,7 +254,7 @@ std::string pdf_of(const Drawing& drawing, Warnings& warnings) {
   return out;
 }
 
-std::string png_of(const Drawing& drawing, double dpi, Warnings& warnings) {
+std::string png_of(const Drawing& drawing, double dpi, Findings& warnings) {
   constexpr double kMostPixels = 2e8;
   const double scale = dpi / 72;
   const double width = std::ceil(drawing.width * scale), height = std::ceil(drawing.height * scale);
@@ -294,11 +294,11 @@ bool has_cairo() {
   return false;
 }
 
-std::string pdf_of(const Drawing& /*drawing*/, Warnings& /*warnings*/) {
+std::string pdf_of(const Drawing& /*drawing*/, Findings& /*warnings*/) {
   return "";
 }
 
-std::string png_of(const Drawing& /*drawing*/, double /*dpi*/, Warnings& /*warnings*/) {
+std::string png_of(const Drawing& /*drawing*/, double /*dpi*/, Findings& /*warnings*/) {
   return "";
 }
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/figure/detail/drawing.hpp"
 
 namespace libchar {
@@ -12,7 +12,7 @@ bool has_cairo();
 
 /// One page. A PDF has no date of its own (SOURCE_DATE_EPOCH gives it one), so that the same
 /// drawing gives the same bytes.
-std::string pdf_of(const Drawing& drawing, Warnings& warnings);
-std::string png_of(const Drawing& drawing, double dpi, Warnings& warnings);
+std::string pdf_of(const Drawing& drawing, Findings& warnings);
+std::string png_of(const Drawing& drawing, double dpi, Findings& warnings);
 
 }  // namespace libchar

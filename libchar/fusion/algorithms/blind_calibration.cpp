@@ -128,7 +128,7 @@ void BlindCalibration::set_offsets() {
     offset_[i] = (origin_ + mean_[i]) - means / gains / inverse_gain_[i];
 }
 
-void BlindCalibration::remarks(Warnings& warnings) const {
+void BlindCalibration::remarks(Findings& warnings) const {
   if (!solved_)
     warnings.add(
         "not_calibrated",

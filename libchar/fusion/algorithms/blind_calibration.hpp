@@ -60,7 +60,7 @@ struct BlindCalibration {
   Eigen::MatrixXd weights() const {
     return inverse_gain_ / static_cast<double>(inverse_gain_.size());
   }
-  void remarks(Warnings& warnings) const;
+  void remarks(Findings& warnings) const;
   /// Solves for what has been seen so far (`step` does so now and then).
   void solve();
   const Eigen::VectorXd& inverse_gain() const { return inverse_gain_; }

@@ -165,7 +165,7 @@ Eigen::MatrixXd BlindGls::weights() const {
   return weight_ / weight_.dot(gain_);
 }
 
-void BlindGls::remarks(Warnings& warnings) const {
+void BlindGls::remarks(Findings& warnings) const {
   if (!solved_)
     warnings.add("not_calibrated",
                  "blind-gls found no common movement of the channels: it was the plain mean");

@@ -73,7 +73,7 @@ struct BlindGls {
   /// Of the samples as they come; they do not sum to one where gains differ.
   Eigen::MatrixXd weights() const;
   Eigen::VectorXd variances() const { return variance_; }
-  void remarks(Warnings& warnings) const;
+  void remarks(Findings& warnings) const;
   const Eigen::VectorXd& gain() const { return gain_; }
 
  private:

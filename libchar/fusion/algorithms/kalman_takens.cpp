@@ -160,7 +160,7 @@ Estimate KalmanTakensFilter::step(const Sample& y) {
 }
 
 /// Below the error of the channels together the past says more than they do: the input repeats.
-void KalmanTakensFilter::remark(std::string_view name, Warnings& warnings) const {
+void KalmanTakensFilter::remark(std::string_view name, Findings& warnings) const {
   const double fused = 1 / levels_.cwiseInverse().sum(), q = process_variance();
   if (given_q_ > 0 || !(error_weight_ > kPriorErrors) || !(q < fused)) return;
   warnings.add(

@@ -52,7 +52,7 @@ class KalmanTakensFilter {
   std::size_t neighbours() const { return neighbours_; }
   Estimate step(const Sample& y);
   double process_variance() const;
-  void remark(std::string_view name, Warnings& warnings) const;
+  void remark(std::string_view name, Findings& warnings) const;
 
  private:
   double predict();
@@ -88,7 +88,7 @@ struct KalmanTakens {
     return kalman_takens_cost_ns(settings, "dictionary");
   }
   Estimate step(const Sample& y) { return filter_.step(y); }
-  void remarks(Warnings& warnings) const { filter_.remark(description.name, warnings); }
+  void remarks(Findings& warnings) const { filter_.remark(description.name, warnings); }
 
  private:
   KalmanTakensFilter filter_;
@@ -112,7 +112,7 @@ struct KalmanTakensTaught {
   void finish_learning();
   void exchange(LearntExchange& with) { filter_.exchange(with); }
   Estimate step(const Sample& y) { return filter_.step(y); }
-  void remarks(Warnings& warnings) const { filter_.remark(description.name, warnings); }
+  void remarks(Findings& warnings) const { filter_.remark(description.name, warnings); }
 
  private:
   KalmanTakensFilter filter_;

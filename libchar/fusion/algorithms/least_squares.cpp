@@ -288,7 +288,7 @@ Estimate LearntMean::of_present(const Sample& y) const {
   return Estimate::scalar(x + learnt_.constant, std::nan(""));
 }
 
-void remark_on(const LearntWeights& learnt, std::string_view name, Warnings& warnings) {
+void remark_on(const LearntWeights& learnt, std::string_view name, Findings& warnings) {
   for (const int i : learnt.without_signal)
     warnings.add("channel_without_signal",
                  std::string(name) + " left out a channel that does not follow the reference",

@@ -63,7 +63,7 @@ struct LearntWeights {
   std::vector<std::pair<int, int>> copies;
 };
 /// What of it the reader of a result must know.
-void remark_on(const LearntWeights& learnt, std::string_view name, Warnings& warnings);
+void remark_on(const LearntWeights& learnt, std::string_view name, Findings& warnings);
 
 struct LeastSquaresForm {
   bool calibrate = false;
@@ -138,7 +138,7 @@ class ReferenceWeightedMean {
   void exchange(LearntExchange& with) { mean_.exchange(with, channels_); }
   Estimate step(const Sample& y) const { return mean_.step(y); }
   Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
-  void remarks(Warnings& warnings) const { remark_on(mean_.learnt(), name_, warnings); }
+  void remarks(Findings& warnings) const { remark_on(mean_.learnt(), name_, warnings); }
 
  private:
   LeastSquaresForm form_;

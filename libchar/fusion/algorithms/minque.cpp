@@ -136,7 +136,7 @@ void Minque::check_recovery(const Variances& variances, const Sample& y) {
   }
 }
 
-void Minque::remarks(Warnings& warnings) const {
+void Minque::remarks(Findings& warnings) const {
   if (detector_) detector_->remarks(description.name, warnings);
   if (asked_ && !detection_)
     warnings.add("faults_not_watched",

@@ -103,7 +103,7 @@ struct Minque {
   Eigen::MatrixXd weights() const;
   Eigen::VectorXd variances() const;
   const FaultLog& faults() const { return detector_ ? detector_->log() : watch_.log(); }
-  void remarks(Warnings& warnings) const;
+  void remarks(Findings& warnings) const;
 
  private:
   template <class Variances>

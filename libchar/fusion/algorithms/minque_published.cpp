@@ -212,7 +212,7 @@ double MinquePublished::weigh() {
   return positive ? 1 / sum : std::numeric_limits<double>::quiet_NaN();
 }
 
-void MinquePublished::remarks(Warnings& warnings) const {
+void MinquePublished::remarks(Findings& warnings) const {
   if (fault_free_ <= 0)
     warnings.add("faults_not_watched",
                  "minque-published looks for no faults: its thresholds need a stretch that is "

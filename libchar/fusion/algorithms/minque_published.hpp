@@ -105,7 +105,7 @@ struct MinquePublished {
   Eigen::MatrixXd weights() const { return weights_; }
   Eigen::VectorXd variances() const { return variances_; }
   const FaultLog& faults() const { return log_; }
-  void remarks(Warnings& warnings) const;
+  void remarks(Findings& warnings) const;
 
  private:
   void choose(const Sample& y, bool with_faulty);

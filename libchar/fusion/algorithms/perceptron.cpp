@@ -155,7 +155,7 @@ Estimate Perceptron::step(const Sample& y) {
   return Estimate::scalar(target_.mean + target_.deviation * out, variance_);
 }
 
-void Perceptron::remarks(Warnings& warnings) const {
+void Perceptron::remarks(Findings& warnings) const {
   if (network_.hidden < asked_)
     warnings.add("perceptron_fewer_neurons",
                  "the perceptron has " + std::to_string(network_.hidden) + " neurons instead of " +

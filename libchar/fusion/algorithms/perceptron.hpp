@@ -63,7 +63,7 @@ struct Perceptron {
   void finish_learning();
   void exchange(LearntExchange& with);
   Estimate step(const Sample& y);
-  void remarks(Warnings& warnings) const;
+  void remarks(Findings& warnings) const;
 
   /// For tests: same learning, same parameters, bit for bit.
   const std::vector<double>& parameters() const { return parameters_; }

@@ -104,7 +104,7 @@ Estimate TiltComplementaryTuned::step(const Sample& y) {
   return Estimate::scalar(filter_->step(tilt_sample(channels_, y)), std::nan(""));
 }
 
-void TiltComplementaryTuned::remarks(Warnings& warnings) const {
+void TiltComplementaryTuned::remarks(Findings& warnings) const {
   if (filter_) warnings.add("tilt_tuned", "time constant " + brief_text(time_constant_) + " s");
 }
 
@@ -133,7 +133,7 @@ Estimate TiltKalmanTuned::step(const Sample& y) {
   return Estimate::scalar(angle, std::isnan(angle) ? angle : filter_->p00());
 }
 
-void TiltKalmanTuned::remarks(Warnings& warnings) const {
+void TiltKalmanTuned::remarks(Findings& warnings) const {
   if (filter_)
     warnings.add("tilt_tuned",
                  "angle_noise " + brief_text(noise_.angle) + " rad^2/s, bias_noise " +

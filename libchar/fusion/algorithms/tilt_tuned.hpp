@@ -55,7 +55,7 @@ struct TiltComplementaryTuned {
   void finish_learning();
   void exchange(LearntExchange& with);
   Estimate step(const Sample& y);
-  void remarks(Warnings& warnings) const;
+  void remarks(Findings& warnings) const;
 
  private:
   TiltChannels channels_;
@@ -79,7 +79,7 @@ struct TiltKalmanTuned {
   void finish_learning();
   void exchange(LearntExchange& with);
   Estimate step(const Sample& y);
-  void remarks(Warnings& warnings) const;
+  void remarks(Findings& warnings) const;
 
  private:
   TiltChannels channels_;

@@ -20,7 +20,7 @@ void VirtualSensor::finish_learning() {
   if (smoother_) smoother_->finish();
 }
 
-void VirtualSensor::remarks(Warnings& warnings) const {
+void VirtualSensor::remarks(Findings& warnings) const {
   if (filter().states().size() == 0)
     warnings.add(
         "no_drift",

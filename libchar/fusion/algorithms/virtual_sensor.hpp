@@ -75,7 +75,7 @@ struct VirtualSensor {
   void finish_learning();
   Estimate step(const Sample& y) { return smoother_ ? smoother_->step() : filter_->step(y); }
   Eigen::MatrixXd weights() const { return filter().weights(); }
-  void remarks(Warnings& warnings) const;
+  void remarks(Findings& warnings) const;
 
  private:
   const BiasFilter& filter() const { return smoother_ ? smoother_->filter() : *filter_; }

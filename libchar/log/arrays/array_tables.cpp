@@ -93,7 +93,7 @@ class ArrayTables final : public TopicReader {
     unit_ = unit;
   }
 
-  bool next(RowBlock& block, std::size_t most, Warnings& warnings) override {
+  bool next(RowBlock& block, std::size_t most, Findings& warnings) override {
     const std::uint64_t left = table_->topic.rows - row_;
     const auto rows =
         static_cast<std::size_t>(std::min({static_cast<std::uint64_t>(most), most_, left}));

@@ -55,7 +55,7 @@ void check_size(const NpyHeader& header,
                 std::uint64_t needed,
                 std::uint64_t file_bytes,
                 const std::string& file,
-                Warnings& warnings) {
+                Findings& warnings) {
   const std::uint64_t present = file_bytes - header.data_byte;
   if (present < needed) {
     const std::uint64_t item = header.item_bytes;

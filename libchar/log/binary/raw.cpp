@@ -17,7 +17,7 @@ namespace {
 }
 
 // Rows that the file holds; what does not make a whole row is counted.
-std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Warnings& warnings) {
+std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Findings& warnings) {
   const std::string& path = file.path();
   if (sidecar.offset > file.size())
     refuse_raw(fmt::format("{} (byte {})", path, file.size()),

@@ -85,7 +85,7 @@ class BinaryRows final : public RowSource {
     return true;
   }
 
-  bool next(RowBlock& block, Warnings& warnings) override {
+  bool next(RowBlock& block, Findings& warnings) override {
     if (next_row_ == 0) {
       if (channels_.first == 0) warnings.merge(layout_.warnings);
       hash_.start();
@@ -111,7 +111,7 @@ class BinaryRows final : public RowSource {
     return true;
   }
 
-  void finish(Warnings& warnings) override {
+  void finish(Findings& warnings) override {
     std::uint64_t count = 0;
     for (const std::uint64_t n : missing_per_channel_) count += n;
     if (count == 0) return;
@@ -157,7 +157,7 @@ class BinaryRows final : public RowSource {
         "row {} (byte {}, field {})", row, column.first_byte + row * column.stride, column.name);
   }
 
-  void read_values(Wanted& wanted, std::vector<double>& out, std::size_t rows, Warnings& warnings) {
+  void read_values(Wanted& wanted, std::vector<double>& out, std::size_t rows, Findings& warnings) {
     const BinaryColumn& column = wanted.column;
     const std::uint64_t rounded = read_numbers(
         locate(column, rows), static_cast<std::size_t>(column.stride), column.number, out);
@@ -172,7 +172,7 @@ class BinaryRows final : public RowSource {
   }
 
   // number * scale + offset may leave the range of a double at either end, like a number of a text.
-  void to_unit(const BinaryColumn& column, std::vector<double>& out, Warnings& warnings) const {
+  void to_unit(const BinaryColumn& column, std::vector<double>& out, Findings& warnings) const {
     for (std::size_t i = 0; i < out.size(); ++i) {
       const double stored = out[i], scaled = stored * column.scale;
       out[i] = scaled + column.offset;
@@ -192,7 +192,7 @@ class BinaryRows final : public RowSource {
   }
 
   // Infinity is no sample; every NaN becomes the one that means "missing".
-  void drop_non_finite(const Wanted& wanted, std::vector<double>& out, Warnings& warnings) {
+  void drop_non_finite(const Wanted& wanted, std::vector<double>& out, Findings& warnings) {
     std::size_t odd = 0;
     for (const double x : out) odd += !(std::abs(x) <= std::numeric_limits<double>::max());
     if (odd == 0) return;
@@ -209,7 +209,7 @@ class BinaryRows final : public RowSource {
     }
   }
 
-  void probe_byte_order(Wanted& wanted, const std::vector<double>& out, Warnings& warnings) const {
+  void probe_byte_order(Wanted& wanted, const std::vector<double>& out, Findings& warnings) const {
     if (next_row_ >= kOrderProbe || size_of(wanted.column.number.type) < 4 ||
         !is_float(wanted.column.number.type))
       return;

@@ -28,7 +28,7 @@ struct BinaryLayout {
   std::uint64_t data_byte = 0, data_bytes = 0;
   bool column_major = false;  ///< every column is one contiguous stretch
   bool named = false;  ///< names come from the file: a column named like time is the time column
-  Warnings warnings;
+  Findings warnings;
 };
 
 /// `info` brings format and dialect; channels, time column and warnings are filled in here.

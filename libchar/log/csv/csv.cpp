@@ -152,7 +152,7 @@ class CsvSource final : public RowSource {
 
   const LogInfo& info() const override { return info_; }
 
-  bool next(RowBlock& block, Warnings& warnings) override {
+  bool next(RowBlock& block, Findings& warnings) override {
     warnings.merge(std::exchange(pending_, {}));
     if (problem_) throw Error(*problem_);
     while (take(current_)) {
@@ -167,7 +167,7 @@ class CsvSource final : public RowSource {
     return std::exchange(flushed_, true) ? false : pivot_.flush(block);
   }
 
-  void finish(Warnings& warnings) override {
+  void finish(Findings& warnings) override {
     if (finished_) return;
     finished_ = true;
     if (pipeline_) pipeline_->stop();
@@ -268,7 +268,7 @@ class CsvSource final : public RowSource {
       throw std::logic_error("CSV reader: the account of bytes and cells does not balance");
   }
 
-  static void add(Warnings& warnings,
+  static void add(Findings& warnings,
                   std::string_view code,
                   std::string_view message,
                   const Tally& tally) {
@@ -284,7 +284,7 @@ class CsvSource final : public RowSource {
     sum.count += part.count - part.spots.size();
   }
 
-  void account(Warnings& warnings) {
+  void account(Findings& warnings) {
     ParsedChunk& chunk = current_;
     chunk.rows.first_line = next_line_;
     chunk_line_ = next_line_;
@@ -361,7 +361,7 @@ class CsvSource final : public RowSource {
   std::vector<Channel> read_channels_;  // before they are made wide
   Pivot pivot_;
   ChunkReader chunks_;
-  Warnings pending_;
+  Findings pending_;
   RawChunk raw_;
   ParsedChunk current_;
   std::optional<Problem> problem_;

@@ -33,8 +33,8 @@ class RowSource {
   /// Channels (selected ones, in file order), format name, dialect, guesses;
   /// time.column/unit/unit_guessed/rate_hz if the file says.
   virtual const LogInfo& info() const = 0;
-  /// The next rows, false at the end. Warnings found on the way are added to `warnings`.
-  virtual bool next(RowBlock& block, Warnings& warnings) = 0;
+  /// The next rows, false at the end. Findings found on the way are added to `warnings`.
+  virtual bool next(RowBlock& block, Findings& warnings) = 0;
   /// Before the first `next`: only rows first … end-1 are to come, and nothing in front of them is
   /// read; columns of other channels are there and hold any numbers. False: rows of this format
   /// have no fixed places.
@@ -53,7 +53,7 @@ class RowSource {
     return info().file + " (" + place(block, i, rows_before) + ")";
   }
   /// Called once when reading ends (at the end of the file or of the window): warnings that need totals.
-  virtual void finish(Warnings& warnings) { static_cast<void>(warnings); }
+  virtual void finish(Findings& warnings) { static_cast<void>(warnings); }
   /// Bytes consumed and in total (0 when unknown), for progress.
   virtual std::uint64_t bytes_read() const = 0;
   virtual std::uint64_t bytes_total() const = 0;

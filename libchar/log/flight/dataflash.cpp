@@ -73,7 +73,7 @@ class DataflashReader final : public TopicReader {
     topic_ = topic;
     begin();
     first.integers = log_.topics[topic].fields[field].integer;
-    Warnings ignored;
+    Findings ignored;
     while (first.values.size() < kFirstRows) {
       const auto body = next_body();
       if (!body) break;
@@ -94,7 +94,7 @@ class DataflashReader final : public TopicReader {
     begin();
   }
 
-  bool next(RowBlock& block, std::size_t most, Warnings& warnings) override {
+  bool next(RowBlock& block, std::size_t most, Findings& warnings) override {
     const bool bursts = !log_.contents[topic_].kind;
     while (block.rows < most) {
       if (sample_ < samples_) {
@@ -113,7 +113,7 @@ class DataflashReader final : public TopicReader {
     return block.rows > 0;
   }
 
-  void finish(Warnings& warnings) override {
+  void finish(Findings& warnings) override {
     warnings.merge(log_.losses);
     for (const std::string& field : log_.formats.contradictions())
       warnings.add(
@@ -183,7 +183,7 @@ class DataflashReader final : public TopicReader {
     return std::nullopt;
   }
 
-  double value_of(const DataflashChannel& channel, Body body, Warnings& warnings) const {
+  double value_of(const DataflashChannel& channel, Body body, Findings& warnings) const {
     const DataflashField& field =
         log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
     double value = 0;
@@ -198,7 +198,7 @@ class DataflashReader final : public TopicReader {
     const DataflashChannel& channel = log_.contents[topic_].channels[*time_];
     const DataflashField& field =
         log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
-    Warnings ignored;
+    Findings ignored;
     const double value = value_of(channel, body, ignored);
     const auto refuse = [&](const char* code, const char* what) {
       throw Error({ErrorKind::input,
@@ -226,7 +226,7 @@ class DataflashReader final : public TopicReader {
   }
 
   // False where the stamp is none, which is counted.
-  bool add_stamp(Body body, RowBlock& block, Warnings& warnings) const {
+  bool add_stamp(Body body, RowBlock& block, Findings& warnings) const {
     if (time_) {
       block.time_ns.push_back(time_of_field(body));
       return true;
@@ -246,7 +246,7 @@ class DataflashReader final : public TopicReader {
     return true;
   }
 
-  void add_row(Body body, RowBlock& block, Warnings& warnings) {
+  void add_row(Body body, RowBlock& block, Findings& warnings) {
     const DataflashTopic& content = log_.contents[topic_];
     if (add_stamp(body, block, warnings)) {
       for (std::size_t c = 0; c < chosen_.size(); ++c)
@@ -273,7 +273,7 @@ class DataflashReader final : public TopicReader {
   DataflashListing log_;
 
   DataflashFormats formats_;  // as they hold where the reading is
-  Warnings losses_again_;     // those of the listing
+  Findings losses_again_;     // those of the listing
   std::optional<DataflashWalk> walk_;
   DataflashBatches batches_;
   std::size_t topic_ = 0;

@@ -47,7 +47,7 @@ std::uint64_t dataflash_fill(const BinaryFile& file) {
 DataflashWalk::DataflashWalk(const BinaryFile& file,
                              std::size_t block_bytes,
                              const DataflashFormats& formats,
-                             Warnings& losses)
+                             Findings& losses)
     : window_(file, block_bytes, kDataflashLookedBack),
       end_(file.size()),
       fill_(dataflash_fill(file)),

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/number_type.hpp"
 
@@ -122,7 +122,7 @@ class DataflashWalk {
   DataflashWalk(const BinaryFile& file,
                 std::size_t block_bytes,
                 const DataflashFormats& formats,
-                Warnings& losses);
+                Findings& losses);
 
   bool next(DataflashMessage& message);
   std::uint64_t position() const { return position_; }
@@ -138,7 +138,7 @@ class DataflashWalk {
   FileWindow window_;
   std::uint64_t position_ = 0, end_ = 0, fill_ = 0;
   const DataflashFormats* formats_;
-  Warnings* losses_;
+  Findings* losses_;
 };
 
 }  // namespace libchar

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/flight/dataflash_format.hpp"
 #include "libchar/log/recording.hpp"
@@ -74,7 +74,7 @@ struct DataflashListing {
   std::vector<LogTopic> topics;
   std::vector<DataflashTopic> contents;  ///< one a topic
   std::string firmware;                  ///< the first text that the log shows
-  Warnings losses;
+  Findings losses;
 };
 
 /// The instance that a message is of, -1 where its kind has none.

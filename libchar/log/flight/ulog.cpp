@@ -79,7 +79,7 @@ class UlogReader final : public TopicReader {
     if (content.fifo || content.messages == 0) return first;
     const UlogField& wanted = content.layout.fields[field];
     first.integers = !is_float(wanted.type);
-    Warnings ignored;
+    Findings ignored;
     UlogWalk walk(file_, block_bytes_, header_.stretches, log_.sizes, ignored);
     walk.go_to(content.first_byte);
     while (first.values.size() < kFirstRows) {
@@ -103,7 +103,7 @@ class UlogReader final : public TopicReader {
     walk_->go_to(log_.contents[topic].first_byte);
   }
 
-  bool next(RowBlock& block, std::size_t most, Warnings& warnings) override {
+  bool next(RowBlock& block, std::size_t most, Findings& warnings) override {
     const UlogTopic& content = log_.contents[topic_];
     while (block.rows < most) {
       if (fifo_sample_ < fifo_samples_) {
@@ -121,7 +121,7 @@ class UlogReader final : public TopicReader {
     return block.rows > 0;
   }
 
-  void finish(Warnings& warnings) override {
+  void finish(Findings& warnings) override {
     warnings.merge(header_losses_);
     warnings.merge(log_.losses);
     if (log_.dropouts == 0) return;
@@ -175,7 +175,7 @@ class UlogReader final : public TopicReader {
     return messages_before == 0 && stamps.zeros == 1 && stamps.first < 1000000;
   }
 
-  void add_row(Data data, RowBlock& block, Warnings& warnings) {
+  void add_row(Data data, RowBlock& block, Findings& warnings) {
     const UlogTopic& content = log_.contents[topic_];
     const std::uint64_t message = messages_read_++;
     if (time_) {
@@ -202,7 +202,7 @@ class UlogReader final : public TopicReader {
     ++block.rows;
   }
 
-  void begin_samples(Data data, Warnings& warnings) {
+  void begin_samples(Data data, Findings& warnings) {
     const UlogFifo& fifo = *log_.contents[topic_].fifo;
     ++messages_read_;
     fifo_data_.assign(data.begin(), data.end());
@@ -216,7 +216,7 @@ class UlogReader final : public TopicReader {
   }
 
   // Samples of the message in hand, as many as there is room for.
-  void add_samples(RowBlock& block, std::size_t most, Warnings& warnings) {
+  void add_samples(RowBlock& block, std::size_t most, Findings& warnings) {
     const UlogTopic& content = log_.contents[topic_];
     const UlogFifo& fifo = *content.fifo;
     const std::byte* data = fifo_data_.data();
@@ -273,7 +273,7 @@ class UlogReader final : public TopicReader {
   BinaryFile file_;
   std::size_t block_bytes_;
   bool by_publication_;
-  Warnings header_losses_, losses_again_;  // the latter are those of the listing
+  Findings header_losses_, losses_again_;  // the latter are those of the listing
   UlogHeader header_;
   UlogListing log_;
 

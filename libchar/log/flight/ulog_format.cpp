@@ -41,7 +41,7 @@ void refuse_unknown_flags(std::span<const std::byte> flags, const std::string& p
 void split_at_appended(std::span<const std::byte> offsets,
                        const BinaryFile& file,
                        UlogHeader& header,
-                       Warnings& warnings) {
+                       Findings& warnings) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::uint64_t offset = little_endian<8>(offsets.data() + 8 * i);
     if (offset == 0) return;
@@ -63,7 +63,7 @@ bool is_ulog(std::string_view first_bytes) {
   return first_bytes.starts_with(kUlogMagic) || first_bytes.starts_with(kUlogEncrypted);
 }
 
-UlogHeader read_ulog_header(const BinaryFile& file, Warnings& warnings) {
+UlogHeader read_ulog_header(const BinaryFile& file, Findings& warnings) {
   const std::string head = file.head(kUlogHeader + 3 + kFlagBytes);
   const std::string& path = file.path();
   if (head.starts_with(kUlogEncrypted))

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/number_type.hpp"
 #include "libchar/log/flight/ulog_walk.hpp"
@@ -26,7 +26,7 @@ struct UlogHeader {
 bool is_ulog(std::string_view first_bytes);
 
 /// Throws Error(input) for what is no ULog (E0480), is encrypted (E0481) or needs what this reader lacks (E0482).
-UlogHeader read_ulog_header(const BinaryFile& file, Warnings& warnings);
+UlogHeader read_ulog_header(const BinaryFile& file, Findings& warnings);
 
 /// What an information message says, as text: the value of a char array, or a version of four bytes
 /// as "v1.14.3"; "" for others.

@@ -128,7 +128,7 @@ class Lister {
 
   void note_data(const UlogMessage& message) {
     const auto id = static_cast<std::size_t>(little_endian<2>(message.body.data()));
-    Warnings& losses = listing_->losses;
+    Findings& losses = listing_->losses;
     if (id >= listing_->topic_of_id.size() || !listing_->topic_of_id[id]) {
       losses.add("unknown_message",
                  "messages of data that no subscription announces were left out",

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/flight/ulog_format.hpp"
 #include "libchar/log/flight/ulog_walk.hpp"
 #include "libchar/log/recording.hpp"
@@ -46,7 +46,7 @@ struct UlogListing {
   std::map<std::string, std::string> info;
   std::uint64_t dropouts = 0, dropped_ms = 0;
   std::vector<std::string> dropout_places;
-  Warnings losses;
+  Findings losses;
 };
 
 /// `by_publication`: rates and stamps are those of publication, where a message has both.

@@ -65,7 +65,7 @@ UlogWalk::UlogWalk(const BinaryFile& file,
                    std::size_t block_bytes,
                    std::vector<UlogStretch> stretches,
                    const std::vector<UlogSizes>& sizes,
-                   Warnings& losses)
+                   Findings& losses)
     : window_(file, block_bytes, kUlogLookedBack),
       stretches_(std::move(stretches)),
       sizes_(&sizes),

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/binary/file.hpp"
 
 namespace libchar {
@@ -39,7 +39,7 @@ class UlogWalk {
            std::size_t block_bytes,
            std::vector<UlogStretch> stretches,
            const std::vector<UlogSizes>& sizes,
-           Warnings& losses);
+           Findings& losses);
 
   /// Reading goes on with the message that begins at this byte.
   void go_to(std::uint64_t byte);
@@ -67,7 +67,7 @@ class UlogWalk {
   std::uint64_t position_ = 0, end_ = 0;
   std::uint64_t known_good_ = 0;  // the message of this byte has been looked at
   const std::vector<UlogSizes>* sizes_;
-  Warnings* losses_;
+  Findings* losses_;
 };
 
 }  // namespace libchar

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/byte_reader.hpp"
@@ -229,7 +229,7 @@ class BagScan final : public ChunkScan {
   void end_at(std::uint64_t end) { end_ = end, closed_ = true; }
 
  private:
-  Step file_record(RawMessage& message, StreamId& connection, Warnings& warnings) override {
+  Step file_record(RawMessage& message, StreamId& connection, Findings& warnings) override {
     if (at_ >= end_) return closed_ ? Step::end : cut_here(warnings, "");
     const auto record = find_record(file_, at_, end_);
     if (!record) return cut_here(warnings, "inside a record");
@@ -254,7 +254,7 @@ class BagScan final : public ChunkScan {
                : Step::other;
   }
 
-  bool chunk_record(RawMessage& message, StreamId& connection, Warnings& warnings) override {
+  bool chunk_record(RawMessage& message, StreamId& connection, Findings& warnings) override {
     ByteReader in(chunk_);
     const auto header = text_of(in.take(in.number<std::uint32_t>()));
     const auto data = in.take(in.number<std::uint32_t>());
@@ -273,7 +273,7 @@ class BagScan final : public ChunkScan {
   void enter_chunk(std::string_view header,
                    std::uint64_t data_at,
                    std::uint64_t length,
-                   Warnings& warnings) {
+                   Findings& warnings) {
     if (!enters(at_)) return;
     const std::string method(field(header, "compression"));
     const std::uint64_t size = number_field<std::uint32_t>(header, "size").value_or(0);
@@ -300,7 +300,7 @@ class BagScan final : public ChunkScan {
     return true;
   }
 
-  Step cut_here(Warnings& warnings, std::string_view inside) const {
+  Step cut_here(Findings& warnings, std::string_view inside) const {
     return cut(warnings, file_.left(at_) == 0 ? "without its index" : inside, at_);
   }
 

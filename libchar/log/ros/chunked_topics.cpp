@@ -37,7 +37,7 @@ void ChunkScan::only(std::vector<bool> streams, std::vector<std::uint64_t> skip)
   skip_ = std::move(skip);
 }
 
-bool ChunkScan::next(RawMessage& message, StreamId& stream, Warnings& warnings) {
+bool ChunkScan::next(RawMessage& message, StreamId& stream, Findings& warnings) {
   for (;;) {
     while (!chunk_.empty())
       if (chunk_record(message, stream, warnings)) return true;
@@ -72,7 +72,7 @@ void ChunkScan::note_packing(const std::string& method,
     refuse("E0442", std::move(why), fmt::format("write it again without ({})", unpack));
 }
 
-void ChunkScan::lose_chunk(Warnings& warnings, const char* what, const std::string& why) {
+void ChunkScan::lose_chunk(Findings& warnings, const char* what, const std::string& why) {
   warnings.add(
       "broken_chunk",
       fmt::format("chunks that are broken (cannot be unpacked, or {}) were left out", what),
@@ -80,7 +80,7 @@ void ChunkScan::lose_chunk(Warnings& warnings, const char* what, const std::stri
   chunk_ = {};
 }
 
-ChunkScan::Step ChunkScan::cut(Warnings& warnings,
+ChunkScan::Step ChunkScan::cut(Findings& warnings,
                                std::string_view inside,
                                std::uint64_t at) const {
   warnings.add("cut_end",
@@ -185,7 +185,7 @@ void ChunkedTopics::start(std::size_t topic) {
   scan_.begin_at(first_record_);
 }
 
-bool ChunkedTopics::next_message(RawMessage& message, Warnings& warnings) {
+bool ChunkedTopics::next_message(RawMessage& message, Findings& warnings) {
   StreamId stream = 0;
   if (scan_.next(message, stream, warnings)) {
     ++seen_;
@@ -195,7 +195,7 @@ bool ChunkedTopics::next_message(RawMessage& message, Warnings& warnings) {
   return false;
 }
 
-void ChunkedTopics::finish(Warnings& warnings) {
+void ChunkedTopics::finish(Findings& warnings) {
   MessageTopics::finish(warnings);
   if (!ended_) return;
   const LogTopic& topic = topics()[chosen_];

@@ -32,7 +32,7 @@ class ChunkScan {
   /// sorted, are not looked into.
   void only(std::vector<bool> streams, std::vector<std::uint64_t> skip);
   /// The next message and its stream, false at the end.
-  bool next(RawMessage& message, StreamId& stream, Warnings& warnings);
+  bool next(RawMessage& message, StreamId& stream, Findings& warnings);
   /// Byte up to which the file has been read.
   std::uint64_t at() const { return std::min(at_, file_.size()); }
   /// "" when no chunk was seen; "none", "lz4"…, as far as chunks were seen.
@@ -40,9 +40,9 @@ class ChunkScan {
 
  protected:
   enum class Step { message, other, end };
-  virtual Step file_record(RawMessage& message, StreamId& stream, Warnings& warnings) = 0;
+  virtual Step file_record(RawMessage& message, StreamId& stream, Findings& warnings) = 0;
   /// One record of the chunk in memory: is it a message that is wanted?
-  virtual bool chunk_record(RawMessage& message, StreamId& stream, Warnings& warnings) = 0;
+  virtual bool chunk_record(RawMessage& message, StreamId& stream, Findings& warnings) = 0;
 
   bool wanted(StreamId stream) const { return streams_.empty() || streams_[stream]; }
   /// The chunk at this byte of the file is the one that is read from now on, unless it is one to be skipped.
@@ -53,10 +53,10 @@ class ChunkScan {
                     std::uint64_t bytes,
                     const char* rewrite,
                     const char* unpack);
-  void lose_chunk(Warnings& warnings, const char* what, const std::string& why = "");
+  void lose_chunk(Findings& warnings, const char* what, const std::string& why = "");
   /// Counts the end of a file that was never written, or copied, to its end: `inside` says of what
   /// ("inside a chunk", "without its index"), which begins at byte `at`.
-  Step cut(Warnings& warnings, std::string_view inside, std::uint64_t at) const;
+  Step cut(Findings& warnings, std::string_view inside, std::uint64_t at) const;
 
   MovingWindow& file_;
   std::uint64_t at_ = 0;
@@ -89,7 +89,7 @@ struct StreamCount {
 
 class ChunkedTopics : public MessageTopics {
  public:
-  void finish(Warnings& warnings) override;
+  void finish(Findings& warnings) override;
   std::uint64_t bytes_read() const override { return scan_.at(); }
 
  protected:
@@ -117,7 +117,7 @@ class ChunkedTopics : public MessageTopics {
   void list_topics(std::vector<std::pair<StreamId, RawTopic>> streams);
 
   void start(std::size_t topic) override;
-  bool next_message(RawMessage& message, Warnings& warnings) override;
+  bool next_message(RawMessage& message, Findings& warnings) override;
 
  private:
   void look_at(StreamId stream, const RawMessage& message);

@@ -138,7 +138,7 @@ class Db3Reader final : public MessageTopics {
                     fmt::join(ids_[topic], ",")));
   }
 
-  bool next_message(RawMessage& message, Warnings& warnings) override {
+  bool next_message(RawMessage& message, Findings& warnings) override {
     if (query_->step()) {
       ++seen_;
       message.at = static_cast<std::uint64_t>(query_->integer(0));
@@ -186,7 +186,7 @@ class Db3Reader final : public MessageTopics {
     } else if (bytes_ < kSqliteHeader) {
       what = fmt::format("ends at byte {}, inside the header of a database", bytes_);
       hint = "copy it again";
-    } else if (const Warning* cut = found_early().find("cut_end")) {
+    } else if (const Finding* cut = found_early().find("cut_end")) {
       what = fmt::format("holds no table of rosbag2 (topics, messages): {}", cut->sentence);
       hint = "copy it again";
     }

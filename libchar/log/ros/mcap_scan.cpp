@@ -137,7 +137,7 @@ RecordFront read_front(std::span<const std::byte> bytes) {
   return front;
 }
 
-void add_schema(std::span<const std::byte> content, McapCatalog& catalog, Warnings& warnings) {
+void add_schema(std::span<const std::byte> content, McapCatalog& catalog, Findings& warnings) {
   auto read = read_mcap_schema(content);
   if (!read) return;
   const auto [at, added] = catalog.schemas.try_emplace(read->first, std::move(read->second));
@@ -149,7 +149,7 @@ void add_schema(std::span<const std::byte> content, McapCatalog& catalog, Warnin
                  printable(known.name));
 }
 
-void add_channel(std::span<const std::byte> content, McapCatalog& catalog, Warnings& warnings) {
+void add_channel(std::span<const std::byte> content, McapCatalog& catalog, Findings& warnings) {
   auto read = read_mcap_channel(content);
   if (!read) return;
   const std::uint16_t id = read->first;
@@ -165,7 +165,7 @@ void add_channel(std::span<const std::byte> content, McapCatalog& catalog, Warni
 std::optional<McapSummary> summary_records(MovingWindow& file,
                                            std::uint64_t at,
                                            std::uint64_t end,
-                                           Warnings& warnings) {
+                                           Findings& warnings) {
   McapSummary summary;
   bool counted = false;
   while (at < end) {
@@ -212,7 +212,7 @@ void check_mcap_magic(MovingWindow& file) {
                "`format` auto finds out what it is"});
 }
 
-std::optional<McapSummary> read_mcap_summary(MovingWindow& file, Warnings& warnings) {
+std::optional<McapSummary> read_mcap_summary(MovingWindow& file, Findings& warnings) {
   constexpr std::uint64_t kEnd = kMcapFront + kMcapFooter + 8;
   if (file.size() < kFirstRecord + kEnd) return std::nullopt;
   const std::uint64_t footer_at = file.size() - kEnd;
@@ -248,7 +248,7 @@ void McapScan::begin_at(std::uint64_t at) {
   crc_covers_ = at == kFirstRecord;
 }
 
-McapScan::Step McapScan::file_record(RawMessage& message, StreamId& channel, Warnings& warnings) {
+McapScan::Step McapScan::file_record(RawMessage& message, StreamId& channel, Findings& warnings) {
   const std::uint64_t left = file_.left(at_);
   const auto end = [&] { return cut(warnings, kNoEndMark, file_.size()); };
   if (left < kMcapFront) return left == 0 ? end() : cut(warnings, "inside a record", at_);
@@ -304,7 +304,7 @@ bool McapScan::ends_well() {
   return std::string_view(reinterpret_cast<const char*>(tail.data()), tail.size()) == kMcapMagic;
 }
 
-bool McapScan::chunk_record(RawMessage& message, StreamId& channel, Warnings& warnings) {
+bool McapScan::chunk_record(RawMessage& message, StreamId& channel, Findings& warnings) {
   const auto lose_rest = [&] {
     lose_chunk(warnings, kNotAsSaid);
     return false;
@@ -326,12 +326,12 @@ bool McapScan::chunk_record(RawMessage& message, StreamId& channel, Warnings& wa
   return true;
 }
 
-void McapScan::note_catalog(McapOp op, std::span<const std::byte> content, Warnings& warnings) {
+void McapScan::note_catalog(McapOp op, std::span<const std::byte> content, Findings& warnings) {
   if (op == McapOp::schema) add_schema(content, catalog_, warnings);
   if (op == McapOp::channel) add_channel(content, catalog_, warnings);
 }
 
-void McapScan::enter_chunk(std::uint64_t content_at, std::uint64_t length, Warnings& warnings) {
+void McapScan::enter_chunk(std::uint64_t content_at, std::uint64_t length, Findings& warnings) {
   if (!enters(content_at - kMcapFront)) return;
   const auto head = read_mcap_chunk(
       file_.view(content_at, static_cast<std::size_t>(std::min<std::uint64_t>(length, 256))));
@@ -346,7 +346,7 @@ void McapScan::enter_chunk(std::uint64_t content_at, std::uint64_t length, Warni
 void McapScan::unpack_chunk(const McapChunkFront& front,
                             std::span<const std::byte> packed,
                             bool whole,
-                            Warnings& warnings) {
+                            Findings& warnings) {
   const auto broken = [&](const std::string& why) { lose_chunk(warnings, kNotAsSaid, why); };
   chunk_ = packed;
   if (!front.compression.empty() && front.compression != "none") {
@@ -377,7 +377,7 @@ void McapScan::note_crc(std::uint64_t bytes) {
   }
 }
 
-void McapScan::check_crc(std::span<const std::byte> content, Warnings& warnings) const {
+void McapScan::check_crc(std::span<const std::byte> content, Findings& warnings) const {
   const auto said = ByteReader(content).number<std::uint32_t>();
   if (!crc_covers_ || said == 0 || said == crc_) return;
   warnings.add("checksum",

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/ros/chunked_topics.hpp"
 #include "libchar/log/ros/file_window.hpp"
 
@@ -104,7 +104,7 @@ struct McapSummary {
 };
 
 /// Nothing when there is none, or none that can be relied on (then counted).
-std::optional<McapSummary> read_mcap_summary(MovingWindow& file, Warnings& warnings);
+std::optional<McapSummary> read_mcap_summary(MovingWindow& file, Findings& warnings);
 
 /// Are the records of an MCAP file to follow? Throws Error(input) where they are not.
 void check_mcap_magic(MovingWindow& file);
@@ -115,17 +115,17 @@ class McapScan final : public ChunkScan {
   void begin_at(std::uint64_t at) override;
 
  private:
-  Step file_record(RawMessage& message, StreamId& channel, Warnings& warnings) override;
-  bool chunk_record(RawMessage& message, StreamId& channel, Warnings& warnings) override;
-  void enter_chunk(std::uint64_t content_at, std::uint64_t length, Warnings& warnings);
+  Step file_record(RawMessage& message, StreamId& channel, Findings& warnings) override;
+  bool chunk_record(RawMessage& message, StreamId& channel, Findings& warnings) override;
+  void enter_chunk(std::uint64_t content_at, std::uint64_t length, Findings& warnings);
   void unpack_chunk(const McapChunkFront& front,
                     std::span<const std::byte> packed,
                     bool whole,
-                    Warnings& warnings);
+                    Findings& warnings);
   bool ends_well();
-  void note_catalog(McapOp op, std::span<const std::byte> content, Warnings& warnings);
+  void note_catalog(McapOp op, std::span<const std::byte> content, Findings& warnings);
   void note_crc(std::uint64_t bytes);
-  void check_crc(std::span<const std::byte> content, Warnings& warnings) const;
+  void check_crc(std::span<const std::byte> content, Findings& warnings) const;
 
   McapCatalog& catalog_;
   std::uint32_t crc_ = 0;

@@ -97,11 +97,11 @@ class Rosbag2Reader final : public TopicReader {
     unit_ = unit;
   }
 
-  bool next(RowBlock& block, std::size_t most, Warnings& warnings) override {
+  bool next(RowBlock& block, std::size_t most, Findings& warnings) override {
     while (reader_ || open_part(warnings)) {
       RowBlock rows;
       rows.columns.resize(here_.size());
-      Warnings found;
+      Findings found;
       const bool more = reader_->next(rows, most, found);
       add(found, warnings);
       if (more) {
@@ -113,7 +113,7 @@ class Rosbag2Reader final : public TopicReader {
     return false;
   }
 
-  void finish(Warnings& warnings) override {
+  void finish(Findings& warnings) override {
     if (!selected_)
       warnings.merge(listing_);
     else if (reader_)
@@ -133,7 +133,7 @@ class Rosbag2Reader final : public TopicReader {
     std::error_code none;
     part.bytes = std::filesystem::file_size(file, none);
     if (parts_.empty()) dialect_ = reader->dialect();
-    Warnings found;
+    Findings found;
     reader->finish(found);
     parts_.push_back(std::move(part));
     at_ = parts_.size() - 1;
@@ -192,7 +192,7 @@ class Rosbag2Reader final : public TopicReader {
   }
 
   // The next part that has rows of the topic; false behind the last one.
-  bool open_part(Warnings& warnings) {
+  bool open_part(Findings& warnings) {
     for (; next_part_ < parts_.size(); bytes_done_ += parts_[next_part_++].bytes) {
       const Part& part = parts_[next_part_];
       const auto topic = merged_[topic_].in_part[next_part_];
@@ -234,8 +234,8 @@ class Rosbag2Reader final : public TopicReader {
     reader_->select(topic, chosen_, time, unit_);
   }
 
-  void close_part(Warnings& warnings) {
-    Warnings found;
+  void close_part(Findings& warnings) {
+    Findings found;
     reader_->finish(found);
     add(found, warnings);
     bytes_done_ += parts_[at_].bytes;
@@ -252,9 +252,9 @@ class Rosbag2Reader final : public TopicReader {
   }
 
   // With the part in front of every place.
-  void add(const Warnings& found, Warnings& warnings) const {
+  void add(const Findings& found, Findings& warnings) const {
     const std::string name = name_of(parts_[at_].file);
-    for (const Warning& one : found.list()) {
+    for (const Finding& one : found.list()) {
       const std::uint64_t places = one.where.rows.size();
       for (const std::string& place : one.where.rows)
         warnings.add(one.code, one.sentence, place.empty() ? name : name + ", " + place);
@@ -268,7 +268,7 @@ class Rosbag2Reader final : public TopicReader {
   std::vector<LogTopic> topics_;
   std::vector<Merged> merged_;
   std::vector<std::string> dialect_;
-  Warnings listing_;
+  Findings listing_;
 
   bool selected_ = false;
   std::size_t topic_ = 0;

@@ -42,7 +42,7 @@ LIBCHAR_WIDE_LANES bool steps_between(std::int64_t before,
 TimeGrid::TimeGrid(const RowSource& source,
                    const ReadOptions& options,
                    BlockSink& sink,
-                   Warnings& warnings)
+                   Findings& warnings)
     : source_(source), options_(options), output_(sink), warnings_(warnings) {
   const auto instant =
       [](const std::optional<double>& s, std::int64_t otherwise, const char* name) {

@@ -36,7 +36,7 @@ class TimeGrid {
   TimeGrid(const RowSource& source,
            const ReadOptions& options,
            BlockSink& sink,
-           Warnings& warnings);
+           Findings& warnings);
 
   /// Takes the block's rows (its buffers come back for reuse). Returns false when the window's end
   /// has been reached.
@@ -132,7 +132,7 @@ class TimeGrid {
   const RowSource& source_;
   const ReadOptions& options_;
   GridOutput output_;
-  Warnings& warnings_;
+  Findings& warnings_;
   std::deque<Pending> pending_;
   std::vector<RowBlock> spare_;
   std::uint64_t waiting_ = 0;  ///< rows

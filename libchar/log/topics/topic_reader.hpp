@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/log/time/time_column.hpp"
@@ -63,11 +63,11 @@ class TopicReader {
   /// and, where there are stamps, time_ns are empty; sets block.rows. False at the end. Values as
   /// they are: infinities and NaN are looked at by the caller. What is lost of the file (a cut end,
   /// a broken chunk, a dropout) is counted in `warnings`, never an end without a word.
-  virtual bool next(RowBlock& block, std::size_t most, Warnings& warnings) = 0;
+  virtual bool next(RowBlock& block, std::size_t most, Findings& warnings) = 0;
 
-  /// Warnings that need totals, and what was found lost while topics were listed: asked for after a
+  /// Findings that need totals, and what was found lost while topics were listed: asked for after a
   /// listing too, without a `select`.
-  virtual void finish(Warnings& warnings) { static_cast<void>(warnings); }
+  virtual void finish(Findings& warnings) { static_cast<void>(warnings); }
 
   /// Bytes of the file consumed so far, for progress.
   virtual std::uint64_t bytes_read() const = 0;

@@ -168,7 +168,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
 // What a log lost says why nothing of it can be read.
 [[noreturn]] void refuse_unreadable_log(const std::vector<LogTopic>& topics,
                                         const std::string& file,
-                                        const Warnings& losses) {
+                                        const Findings& losses) {
   std::string what, got, hint;
   if (!topics.empty()) {
     const std::string& why = topics.front().why_not;
@@ -181,7 +181,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
     what = "holds no whole message";
   }
   if (!losses.empty()) {
-    const Warning& first = losses.list().front();
+    const Finding& first = losses.list().front();
     what += ": " + first.sentence;
     if (!first.where.rows.empty()) what += fmt::format(" ({})", first.where.rows.front());
   }
@@ -221,7 +221,7 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
 
 void refuse_without_topic(const std::vector<LogTopic>& topics,
                           const std::string& file,
-                          const Warnings& losses) {
+                          const Findings& losses) {
   const std::vector<std::string> names = readable_names(topics);
   if (names.empty()) refuse_unreadable_log(topics, file, losses);
   throw Error(
@@ -251,7 +251,7 @@ class TopicRows final : public RowSource {
     const auto choice =
         info_.topics.empty() ? std::nullopt : choose_topic(info_.topics, options, path);
     if (!choice) {
-      Warnings losses;
+      Findings losses;
       reader_->finish(losses);
       refuse_without_topic(info_.topics, path, losses);
     }
@@ -267,7 +267,7 @@ class TopicRows final : public RowSource {
   std::uint64_t bytes_total() const override { return info_.bytes; }
   std::string sha256() override { return hash_.finish(); }
 
-  bool next(RowBlock& block, Warnings& warnings) override {
+  bool next(RowBlock& block, Findings& warnings) override {
     if (rows_ == 0) hash_.start();
     block.rows = 0;
     block.columns.resize(info_.channels.size());
@@ -283,7 +283,7 @@ class TopicRows final : public RowSource {
     return true;
   }
 
-  void finish(Warnings& warnings) override {
+  void finish(Findings& warnings) override {
     reader_->finish(warnings);
     std::uint64_t count = 0;
     for (const std::uint64_t n : missing_per_channel_) count += n;
@@ -391,7 +391,7 @@ class TopicRows final : public RowSource {
   }
 
   // Infinity is no sample; every NaN becomes the one that means "missing".
-  void drop_non_finite(std::size_t channel, std::vector<double>& values, Warnings& warnings) {
+  void drop_non_finite(std::size_t channel, std::vector<double>& values, Findings& warnings) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (std::isfinite(values[i])) continue;
       const std::string place =

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/recording.hpp"
@@ -34,7 +34,7 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
 /// can be read, Error(input): what it lost (`losses`) may be the reason.
 [[noreturn]] void refuse_without_topic(const std::vector<LogTopic>& topics,
                                        const std::string& file,
-                                       const Warnings& losses = {});
+                                       const Findings& losses = {});
 
 /// The rows of the topic and channels that `options` choose. Throws Error(usage) when they choose
 /// none or several (E0425).

@@ -124,13 +124,13 @@ std::vector<FinalRow> final_rows(const ReplayView& view) {
 std::vector<AlgorithmRemark> remarks_of(const ReplayResult& r) {
   std::vector<AlgorithmRemark> out;
   for (const AlgorithmResult& a : r.algorithms)
-    for (const Warning& w : a.remarks.list())
+    for (const Finding& w : a.remarks.list())
       out.push_back({w.sentence.starts_with(a.label) ? "" : a.label, w.sentence, w.count});
   return out;
 }
 
-Warnings all_warnings(const ReplayResult& r) {
-  Warnings out = r.warnings;
+Findings all_warnings(const ReplayResult& r) {
+  Findings out = r.warnings;
   for (const LogInfo& log : r.logs) out.merge(log.warnings);
   return out;
 }

@@ -100,7 +100,7 @@ struct ReplayView {
   std::vector<std::optional<double>> noise_sd;  ///< of a sensor's sample, as algorithms were told
   std::vector<FinalRow> final_rows;
   std::vector<AlgorithmRemark> remarks;
-  Warnings warnings;  ///< of the replay and of its logs
+  Findings warnings;  ///< of the replay and of its logs
   ReplayFigures figures;
   std::string simulation_identity;  ///< SHA-256 of all that was simulated; empty: a recording
 

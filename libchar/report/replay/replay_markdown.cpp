@@ -36,8 +36,8 @@ std::string markdown_list(const char* head, const std::vector<std::string>& item
 
 std::vector<std::string> warning_words(const ReplayView& view) {
   std::vector<std::string> out;
-  const auto add = [&](const std::string& of, const Warnings& warnings) {
-    for (const Warning& w : warnings.list())
+  const auto add = [&](const std::string& of, const Findings& warnings) {
+    for (const Finding& w : warnings.list())
       out.push_back(of + w.sentence + (w.count > 1 ? fmt::format(" ({} ×)", w.count) : ""));
   };
   add("", view.result->warnings);

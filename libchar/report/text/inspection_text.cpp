@@ -116,7 +116,7 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
     dialect += (dialect == info.format ? ": " : "; ") + printable(fact);
   text += "  read as " + dialect + "\n";
   for (const std::string& guess : info.guesses) text += "  guessed: " + printable(guess) + "\n";
-  for (const Warning& warning : info.warnings.list())
+  for (const Finding& warning : info.warnings.list())
     text += "  warning: " + sentence_of(warning) + "\n";
   text += terminal_table(is_listing(info) ? topic_table(info) : channel_table(inspection), {width});
   return text + remarks(inspection);

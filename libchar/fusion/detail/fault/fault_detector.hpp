@@ -23,7 +23,7 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/fusion/array.hpp"
 #include "libchar/fusion/detail/fault/cusum_bank.hpp"
 #include "libchar/fusion/detail/fault/fault_baseline.hpp"
@@ -64,7 +64,7 @@ class FaultDetector {
   bool set_changed() const { return set_changed_; }
   std::span<const VarianceChange> changes() const { return changes_; }
   const FaultLog& log() const { return log_; }
-  void remarks(std::string_view algorithm, Warnings& warnings) const;
+  void remarks(std::string_view algorithm, Findings& warnings) const;
   double threshold() const { return threshold_; }
 
  private:

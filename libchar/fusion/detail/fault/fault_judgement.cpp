@@ -266,7 +266,7 @@ void FaultDetector::stand_down() {
   sets_changed();
 }
 
-void FaultDetector::remarks(std::string_view algorithm, Warnings& warnings) const {
+void FaultDetector::remarks(std::string_view algorithm, Findings& warnings) const {
   const auto at_time = [&](std::int64_t sample) {
     return rate_hz_ > 0
                ? shortest(std::round(static_cast<double>(sample) / rate_hz_ * 100) / 100) + " s"

@@ -56,7 +56,7 @@ void WatchedRunner::leave_out(FaultDetector& detector, const Block& samples) {
   }
 }
 
-void WatchedRunner::remarks(Warnings& warnings) const {
+void WatchedRunner::remarks(Findings& warnings) const {
   watched_->remarks(warnings);
   const std::string_view name = description().name;
   if (detector_) return detector_->remarks(name, warnings);

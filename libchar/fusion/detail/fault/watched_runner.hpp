@@ -53,7 +53,7 @@ class WatchedRunner final : public Runner {
   std::optional<Eigen::MatrixXd> weights() const override { return watched_->weights(); }
   std::optional<Eigen::VectorXd> variances() const override { return watched_->variances(); }
   const FaultLog* faults() const override { return detector_ ? &detector_->log() : &none_; }
-  void remarks(Warnings& warnings) const override;
+  void remarks(Findings& warnings) const override;
 
  private:
   /// What is left of a block of samples, at most `kWatchedAtOnce` instants.

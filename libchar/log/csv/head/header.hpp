@@ -11,7 +11,7 @@ namespace libchar::csv {
 /// strange names a warning.
 void name_columns(Dialect& dialect, LogInfo& info);
 
-/// "line 412", "line 412, column 6": a place in the form Warnings use.
+/// "line 412", "line 412, column 6": a place in the form Findings use.
 std::string place_name(std::uint64_t line, std::uint64_t column);
 
 }  // namespace libchar::csv

@@ -164,7 +164,7 @@ void MessageTopics::select(std::size_t topic,
 }
 
 // The stamp and, in row_, the numbers of a message. False when it has none that can be used.
-bool MessageTopics::row_of(const RawMessage& message, Warnings& warnings) {
+bool MessageTopics::row_of(const RawMessage& message, Findings& warnings) {
   stamp_ = source_ == Source::publish ? message.publish_ns : message.log_ns;
   std::uint64_t rounded = 0;
   const Decoded result = decoders_[topic_].decoder->decode(message.data, row_, stamp_, rounded);
@@ -194,7 +194,7 @@ bool MessageTopics::row_of(const RawMessage& message, Warnings& warnings) {
   return true;
 }
 
-bool MessageTopics::next(RowBlock& block, std::size_t most, Warnings& warnings) {
+bool MessageTopics::next(RowBlock& block, std::size_t most, Findings& warnings) {
   warnings.merge(std::exchange(early_, {}));
   std::size_t room = 0;
   const auto make_room = [&](std::size_t rows) {
@@ -214,7 +214,7 @@ bool MessageTopics::next(RowBlock& block, std::size_t most, Warnings& warnings) 
   return block.rows > 0;
 }
 
-void MessageTopics::finish(Warnings& warnings) {
+void MessageTopics::finish(Findings& warnings) {
   warnings.merge(std::exchange(early_, {}));
   if (listed_only()) warnings.merge(listing_);
 }

@@ -42,9 +42,9 @@ class MessageTopics : public TopicReader {
               const std::vector<std::size_t>& fields,
               std::optional<std::size_t> time,
               StampUnit unit) override;
-  bool next(RowBlock& block, std::size_t most, Warnings& warnings) override;
+  bool next(RowBlock& block, std::size_t most, Findings& warnings) override;
   /// What was found when topics were listed, unless rows were read, whose warnings say it too.
-  void finish(Warnings& warnings) override;
+  void finish(Findings& warnings) override;
 
  protected:
   /// `publishes`: messages have a time of publication too.
@@ -54,14 +54,14 @@ class MessageTopics : public TopicReader {
   /// Before the first `next_message`: only messages of this topic are wanted.
   virtual void start(std::size_t topic) = 0;
   /// The next message of the topic, false at the end; what is lost on the way is counted.
-  virtual bool next_message(RawMessage& message, Warnings& warnings) = 0;
+  virtual bool next_message(RawMessage& message, Findings& warnings) = 0;
   /// Where a message stands, for warnings.
   virtual std::string place(const RawMessage& message) const;
 
   /// Said with the listing and with the rows.
-  Warnings& found_early() { return early_; }
+  Findings& found_early() { return early_; }
   /// Said with the listing; found again where rows are read.
-  Warnings& found_listing() { return listing_; }
+  Findings& found_listing() { return listing_; }
   bool listed_only() const { return !selected_; }
   const std::string& path() const { return path_; }
 
@@ -76,13 +76,13 @@ class MessageTopics : public TopicReader {
   void add_topic(RawTopic& raw);
   Source source_of(std::size_t topic) const;
   [[noreturn]] void refuse_source(std::size_t topic, std::string what) const;
-  bool row_of(const RawMessage& message, Warnings& warnings);
+  bool row_of(const RawMessage& message, Findings& warnings);
 
   std::string path_, time_source_;
   bool publishes_ = false;
   std::vector<LogTopic> topics_;
   std::vector<Topic> decoders_;
-  Warnings early_, listing_;
+  Findings early_, listing_;
   bool selected_ = false;
   std::size_t topic_ = 0, fields_ = 0;
   Source source_ = Source::log;

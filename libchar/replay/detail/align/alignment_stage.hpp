@@ -21,7 +21,7 @@ AlignmentResult measure_alignment(const Scene& scene,
                                   const ReplayPlan& plan,
                                   const Instants& instants,
                                   const SceneAlignment& alignment,
-                                  Warnings& warnings,
+                                  Findings& warnings,
                                   Progress& progress);
 
 }  // namespace libchar

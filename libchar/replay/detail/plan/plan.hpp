@@ -41,7 +41,7 @@ struct ReplayPlan {
   bool without_reference = false;  ///< leave-one-out and split arrays
   std::vector<PlannedAlgorithm> algorithms;
   std::vector<PlannedAlgorithm> optimum;  ///< bounds that tell the optimum of the scene
-  Warnings warnings;
+  Findings warnings;
 };
 
 /// Throws Error(input) for unknown algorithms or options of the scene (with place), windows outside

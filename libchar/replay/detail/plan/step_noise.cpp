@@ -115,7 +115,7 @@ std::vector<std::optional<StepNoise>> StepNoiseMeter::result() const {
 void warn_of_noise(const std::vector<std::string>& names,
                    const std::vector<std::optional<StepNoise>>& learnt,
                    const std::vector<std::optional<StepNoise>>& here,
-                   Warnings& warnings) {
+                   Findings& warnings) {
   std::vector<std::pair<std::size_t, double>> changes;  // ln of the ratio of deviations
   std::size_t compared = 0;
   double low = 0, high = 0;

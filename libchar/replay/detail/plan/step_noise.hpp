@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/warnings.hpp"
+#include "libchar/core/finding.hpp"
 
 namespace libchar {
 
@@ -54,6 +54,6 @@ class StepNoiseMeter {
 void warn_of_noise(const std::vector<std::string>& names,
                    const std::vector<std::optional<StepNoise>>& learnt,
                    const std::vector<std::optional<StepNoise>>& here,
-                   Warnings& warnings);
+                   Findings& warnings);
 
 }  // namespace libchar

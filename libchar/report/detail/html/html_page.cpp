@@ -108,10 +108,10 @@ void add_program(Table& facts, const std::vector<std::string>& command) {
   facts.add({"Command", line});
 }
 
-std::string warnings_part(const Warnings& warnings) {
+std::string warnings_part(const Findings& warnings) {
   Table out("kind|what|count|first places");
   out.title = "Repairs and warnings";
-  for (const Warning& w : warnings.list())
+  for (const Finding& w : warnings.list())
     out.add({w.code,
              w.sentence,
              count_text(w.count),

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "libchar/core/document/json.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/table/table.hpp"
-#include "libchar/core/warnings.hpp"
 #include "libchar/log/recording.hpp"
 
 namespace libchar {
@@ -36,6 +36,6 @@ void add_input_file(Table& facts, const LogInfo& log);
 void add_program(Table& facts, const std::vector<std::string>& command);
 Cell digest_cell(const LogInfo& log);
 /// "Repairs and warnings": a table by kind, or "None."
-std::string warnings_part(const Warnings& warnings);
+std::string warnings_part(const Findings& warnings);
 
 }  // namespace libchar
