@@ -176,6 +176,20 @@ TEST_CASE("events: clean records have none") {
   CHECK(alarms <= 3);  // one in a hundred of 150 records: four and more are chance once in fifteen
 }
 
+TEST_CASE("events: differences of white phase noise have none") {
+  test::Gaussian gauss(46);
+  for (int r = 0; r < 20; ++r) {
+    std::vector<double> y(20'000);
+    double before = gauss();
+    for (double& value : y) {
+      const double phase = gauss();
+      value = phase - before;
+      before = phase;
+    }
+    CHECK(find_events(event_series(y, 1), fitted_powers()).events.empty());
+  }
+}
+
 TEST_CASE("events: a step is found, placed and sized, and K is what it was without") {
   test::NoiseSource source(kEventSamples, kEventRate, 21);
   for (const double sigmas : {1.0, -2.0, 5.0, 10.0}) {

@@ -107,6 +107,30 @@ TEST_CASE("motion: a handled stretch is found, and the longest still one") {
   CHECK(motion.still_s->high > 990);
 }
 
+TEST_CASE("motion: picked up early and put down late, steadily moved between") {
+  test::NoiseSource source(kMotionSamples, kMotionRate, 36);
+  std::vector<double> y = source.record(kMotionQ, kMotionB, kMotionK);
+  for (std::size_t t = 8'000; t < 92'000; ++t) y[t] += 20 * kMotionSigma * source.gauss()();
+  const Motion motion = motion_of(y);
+  REQUIRE(motion.moving_s.size() == 1);
+  CHECK(std::abs(motion.moving_s[0].low - 80) < 8);
+  CHECK(std::abs(motion.moving_s[0].high - 920) < 8);
+  REQUIRE(motion.still_s.has_value());
+  REQUIRE(motion.findings.size() == 1);
+  CHECK(motion.findings[0].severity == Severity::bad);
+}
+
+TEST_CASE(
+    "motion: lines drawn through gaps and a link that hung are not the rest that others move "
+    "against") {
+  for (const double slope : {1e-3 * kMotionSigma, 1e-9 * kMotionSigma}) {
+    test::NoiseSource source(kMotionSamples, kMotionRate, 37);
+    std::vector<double> y = source.record(kMotionQ, kMotionB, kMotionK);
+    for (std::size_t t = 40'001; t < 48'000; ++t) y[t] = y[t - 1] + slope;
+    CHECK(motion_of(y).moving_s.empty());
+  }
+}
+
 TEST_CASE("motion: a recording in motion throughout is called one") {
   test::NoiseSource source(kMotionSamples, kMotionRate, 34);
   std::vector<double> y = source.record(kMotionQ, kMotionB, kMotionK);

@@ -32,7 +32,7 @@ double mean_of(std::span<const double> values, std::size_t from, std::size_t to)
   return sum / static_cast<double>(to - from);
 }
 
-constexpr std::array kSeriesTerms = {Term::white, Term::flicker, Term::walk};
+constexpr std::array kSeriesTerms = {Term::white, Term::flicker, Term::walk, Term::quantization};
 
 /// What the noise terms of theta = 1 put into the coefficients of a series of a length, and into its bins: the same whatever is taken out
 /// of the series.
@@ -72,7 +72,7 @@ SeriesUnits units_of(const EventSeries& series) {
   return units;
 }
 
-/// Bins of a series for white noise, flicker and walk, slow ones first.
+/// Bins of a series for these terms, slow ones first.
 std::vector<PowerBin> bins_of(const EventSeries& series, const SeriesUnits& units) {
   Dct dct(units.points);
   const std::span<const double> c = dct.transform(series.value).subspan(1);
@@ -84,14 +84,16 @@ std::vector<PowerBin> bins_of(const EventSeries& series, const SeriesUnits& unit
   return bins;
 }
 
-std::vector<double> powers_of(const Mixture& theta, const SeriesUnits& units) {
-  std::vector<double> power(units.points - 1);
-  const auto& [white, flicker, walk] = units.power;
-  for (std::size_t k = 0; k < power.size(); ++k)
-    power[k] = theta[static_cast<std::size_t>(Term::white)] * white[k] +
-               theta[static_cast<std::size_t>(Term::flicker)] * flicker[k] +
-               theta[static_cast<std::size_t>(Term::walk)] * walk[k];
-  return power;
+EventSeries::Noise noise_of(const Mixture& theta, const SeriesUnits& units) {
+  EventSeries::Noise noise{std::vector<double>(units.points - 1)};
+  std::vector<double>& power = noise.power;
+  for (std::size_t i = 0; i < kSeriesTerms.size(); ++i) {
+    const double square = theta[static_cast<std::size_t>(kSeriesTerms[i])];
+    for (std::size_t k = 0; k < power.size(); ++k) power[k] += square * units.power[i][k];
+    if (kSeriesTerms[i] == Term::quantization && power[0] > 0)
+      noise.ends = square * units.power[i][0] / power[0];
+  }
+  return noise;
 }
 
 /// Does the mixture describe the bins?
@@ -118,13 +120,13 @@ NoisePowers fitted_powers() {
         kept->step_s != series.step_s)
       *kept = units_of(series);
     std::vector<PowerBin> bins = bins_of(series, *kept);
-    const TermSet terms = {true, true, true, false, false};
+    const TermSet terms = {true, true, true, true, false};
     ScoringResult fit = score(bin_problem(bins), terms);
     while (bins.size() >= kFewestBins + kHalfOctave && !describes(bins, fit.at.theta)) {
       bins.resize(bins.size() - kHalfOctave);
       fit = score(bin_problem(bins), terms);
     }
-    return powers_of(fit.at.theta, *kept);
+    return noise_of(fit.at.theta, *kept);
   };
 }
 

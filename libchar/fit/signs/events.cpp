@@ -24,6 +24,7 @@ namespace {
 constexpr double kNotTold = 6;  ///< of LR: odds of twenty to one
 constexpr double kGate =
     0.7;  ///< share of a threshold that a score must reach to be looked at again
+constexpr double kMostOfEnds = 0.1;  ///< of EventSeries::Noise: beyond, there is no search
 constexpr double kTauDrop = 3.8415;  ///< chi-square of one degree of freedom, 95 %
 
 /// What a search has in hand.
@@ -34,6 +35,7 @@ struct Hypothesis {
   std::vector<std::vector<EventKind>> not_told;
   std::vector<double> power, weight;
   double deviance = 0;
+  double ends = 0;  ///< of EventSeries::Noise
 };
 
 struct Search {
@@ -73,7 +75,9 @@ EventSeries without(const EventSeries& series, const SeriesGrid& grid, const Reg
 }
 
 void weigh(const Search& search, Hypothesis& now) {
-  now.power = search.powers(without(search.series, search.grid, now.fit));
+  EventSeries::Noise noise = search.powers(without(search.series, search.grid, now.fit));
+  now.power = std::move(noise.power);
+  now.ends = noise.ends;
   raise_to_measured(now.fit.rest, now.power);
   now.weight.resize(now.power.size());
   for (std::size_t k = 0; k < now.power.size(); ++k) now.weight[k] = 1 / now.power[k];
@@ -426,10 +430,11 @@ EventSearch find_events(const EventSeries& series,
   now.fit.rest = search.coefficients;
   fit_both(search, {}, now);
   EventSearch found;
-  for (int round = 0; round <= options.most; ++round) {
+  const int most = now.ends > kMostOfEnds ? -1 : options.most;
+  for (int round = 0; round <= most; ++round) {
     std::optional<Trial> next = next_event(search, now);
     if (!next) break;
-    found.more = round == options.most;
+    found.more = round == most;
     if (found.more) break;
     now = std::move(next->with);
     place_again(search, now);

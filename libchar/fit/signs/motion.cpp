@@ -4,6 +4,7 @@
 // activities agree but for sampling; the shortest interval that holds half of them (a quarter, an eighth) says where and how closely
 // (the shorth: P. Rousseeuw and A. Leroy, Statistica Neerlandica 42, 1988).
 //   in motion throughout   not even an eighth of the blocks agrees within kAgree, nor sixteen quiet ones in turn
+//                          where the agreeing ones are the loud ones, rest is what is quieter by more than any change of strength
 //   moving                 two and more blocks in turn above the agreeing ones by a factor of two and by six of their spreads
 //   a change of strength   a step, warm-up or ramp in the logarithms, by find_events against their own noise: noise whose strength
 //                          itself wanders has to change by more than that
@@ -29,7 +30,8 @@ constexpr double kFactor = 2;    ///< by which motion is louder than rest
 constexpr double kSpreads = 6;
 constexpr double kLasting =
     0.1;  ///< share of a record from which on a louder stretch may be a change
-constexpr double kLoudest = 4;  ///< factor up to which it is
+constexpr double kLoudest = 4;     ///< factor up to which it is
+constexpr double kFaintest = 1e4;  ///< quieter by more than this: a link that hung, filled gaps
 constexpr double kRepeats =
     0.3;  ///< share of repeated values: a staircase, whose steps come and go
 constexpr std::size_t kFewestBlocks = 64;
@@ -124,13 +126,18 @@ Agreeing shortest_half(const std::vector<double>& sorted, double share, double w
   return best;
 }
 
-/// Where less than half of a record is still: the quietest sixteen blocks in turn that agree, if they are quieter than most by
-/// the factor of motion.
-std::optional<Agreeing> quiet_window(std::span<const double> values, double median) {
-  constexpr std::size_t kWindow = 16;
+/// Where less than half of a record is still: the quietest sixteen blocks in turn that agree and are no `filled` ones, if they are
+/// quieter than most by a factor.
+std::optional<Agreeing> quiet_window(std::span<const double> values,
+                                     const std::vector<char>& filled,
+                                     double median,
+                                     double factor) {
+  constexpr std::ptrdiff_t kWindow = 16;
   constexpr double kSteady = 0.2;
   std::optional<Agreeing> quietest;
   for (std::size_t i = 0; i + kWindow <= values.size(); ++i) {
+    const auto first = filled.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(first, first + kWindow, 1) != first + kWindow) continue;
     double sum = 0, squares = 0;
     for (const double a : values.subspan(i, kWindow)) {
       sum += a - median;
@@ -138,21 +145,24 @@ std::optional<Agreeing> quiet_window(std::span<const double> values, double medi
     }
     const double mean = sum / kWindow,
                  spread = std::sqrt(std::max(0.0, squares / kWindow - mean * mean));
-    if (spread > kSteady || mean > -std::log(kFactor)) continue;
+    if (spread > kSteady || mean > -std::log(factor)) continue;
     if (!quietest || median + mean < quietest->centre) quietest = {median + mean, spread};
   }
   return quietest;
 }
 
-std::optional<Agreeing> agreeing(const std::vector<double>& values) {
+std::optional<Agreeing> agreeing(const std::vector<double>& values,
+                                 const std::vector<char>& filled) {
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   // 2 z((1 + share) / 2)
   for (const auto& [share, width] : {std::pair{0.5, 1.349}, {0.25, 0.6373}, {0.125, 0.3145}}) {
     const Agreeing half = shortest_half(sorted, share, width);
-    if (half.spread <= kAgree) return half;
+    if (half.spread > kAgree) continue;
+    const auto quieter = quiet_window(values, filled, half.centre, kLoudest);
+    return quieter && quieter->centre > half.centre - std::log(kFaintest) ? quieter : half;
   }
-  return quiet_window(values, sorted[sorted.size() / 2]);
+  return quiet_window(values, filled, sorted[sorted.size() / 2], kFactor);
 }
 
 /// Blocks above the agreeing ones.
@@ -206,13 +216,22 @@ void tidy(const Activity& activity, double centre, std::vector<char>& moving) {
   }
 }
 
+/// Blocks that are smoother than noise: lines drawn through gaps, whose differences are all alike.
+std::vector<char> filled_blocks(const Activity& activity) {
+  std::vector<char> filled(activity.fine.size());
+  for (std::size_t b = 0; b < filled.size(); ++b)
+    filled[b] = activity.coarse[0][b] > activity.fine[b] + std::log(kFactor) ? 1 : 0;
+  return filled;
+}
+
 /// Blocks that move, by any of the activities; none where no activity agrees with itself.
 std::optional<std::vector<char>> moving_blocks(const Activity& activity) {
-  const std::optional<Agreeing> fine = agreeing(activity.fine);
+  const std::vector<char> filled = filled_blocks(activity);
+  const std::optional<Agreeing> fine = agreeing(activity.fine, filled);
   if (!fine) return std::nullopt;
   std::vector<char> moving = louder(activity.fine, *fine);
   for (const std::vector<double>& coarse : activity.coarse) {
-    const std::optional<Agreeing> rest = agreeing(coarse);
+    const std::optional<Agreeing> rest = agreeing(coarse, filled);
     if (!rest) return std::nullopt;
     const std::vector<char> slowly = louder(coarse, *rest);
     for (std::size_t b = 0; b < moving.size(); ++b) moving[b] |= slowly[b];
@@ -377,7 +396,8 @@ Motion find_motion(const EventSeries& series) {
                                  series.start_s + static_cast<double>(run.to) * block_s});
     motion.louder = louder_by_motion(activity, *moving);
     motion.still_s = longest_of(runs_of(*moving, 0), moving->size(), series, block_s);
-    if (std::count(moving->begin(), moving->end(), 0) >= static_cast<std::ptrdiff_t>(kFewestBlocks))
+    const auto still = static_cast<std::size_t>(std::count(moving->begin(), moving->end(), 0));
+    if (still >= std::max(kFewestBlocks, moving->size() / 4))
       motion.changes = changes_of(activity, *moving, series.start_s, block_s);
   }
   describe(motion, duration_s);

@@ -7,8 +7,8 @@
 //   T = f ln(sum f_i v_i / f) - sum f_i ln v_i,   T / (1 + (sum 1/f_i - 1/f) / 45)  chi-square of 15,   f = sum f_i,
 // divided by how much more than in Gaussian noise ln v scatters at the longest octave of the pieces
 // (where that is half as much again, nothing is said of longer ones). Averaging times that are too
-// long for sixteen stretches: of four, which hold them eight times. At a hundredth over the number
-// of octaves, one in a hundred steady records is called unsteady, or fewer.
+// long for sixteen stretches: of four, which hold them eight times. At .003 over the number of
+// octaves, three in a thousand steady records are called unsteady, or fewer.
 #include "libchar/fit/signs/stationarity.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ constexpr std::size_t kFewStretches = 4;  ///< for averaging times that are too 
 constexpr std::uint64_t kWindows = 16;    ///< averaging times in what is looked at, at least
 constexpr std::uint64_t kFewWindows = 8;  ///< the same of the few
 constexpr std::size_t kShortest = 8192;   ///< samples
-constexpr double kUnsteady = 0.01, kNoticeable = 0.05;
+constexpr double kUnsteady = 0.003, kNoticeable = 0.05;
 constexpr double kMostMissing = 0.1;
 constexpr double kTooHeavy = 1.5;  ///< excess of scatter: single samples carry whole stretches
 constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();

@@ -51,7 +51,7 @@ std::vector<double> transformed(const std::vector<double>& value) {
 NoiseBeside noise_beside(const EventSeries& left) {
   NoiseBeside noise;
   const std::vector<double> rest = transformed(left.value);
-  noise.power = fitted_powers()(left);
+  noise.power = fitted_powers()(left).power;
   raise_to_measured(rest, noise.power);
   noise.deviance = deviance_of(rest, noise.power);
   for (const double power : noise.power) noise.weight.push_back(1 / power);
