@@ -107,6 +107,7 @@ class Fusing {
     find_channels();
     describe_scene();
     instants_ = std::make_unique<Instants>(scene_, progress_);
+    drop_frozen();
     prepare_instants();
     make_runner();
   }
@@ -121,6 +122,7 @@ class Fusing {
   void check_unit(const LearntSensor& sensor, const Channel& channel) const;
   void without(const std::string& sensor);
   void describe_scene();
+  void drop_frozen();
   void prepare_instants();
   void make_runner();
   void look_ahead();
@@ -322,6 +324,25 @@ void Fusing::check_rate() {
                        fmt::format("{} Hz, learnt at {} Hz",
                                    brief_text(instants_->info().rate_hz, 6),
                                    brief_text(learnt_.rate_hz, 6)));
+}
+
+// What a sensor repeats while it hangs is no measurement: it counts as missing.
+void Fusing::drop_frozen() {
+  const SourceInfo& source = instants_->source().info();
+  result_.warnings.merge(source.samples_say);
+  for (std::size_t i = 0; i < source.presence.size(); ++i) {
+    const Presence& at = source.presence[i];
+    if (!is_frozen(source.presence, i, 0, static_cast<double>(source.samples))) continue;
+    scene_.faults.push_back({i,
+                             FaultKind::dropout,
+                             0,
+                             static_cast<double>(at.still_from) / source.rate_hz,
+                             static_cast<double>(at.still_from + at.still) / source.rate_hz});
+    result_.warnings.add("frozen_sensor",
+                         "sensors that stand still where the others move: missing there",
+                         still_words(scene_.sensors[i].name, at, source.rate_hz));
+  }
+  if (!scene_.faults.empty()) instants_ = std::make_unique<Instants>(scene_, progress_);
 }
 
 void Fusing::prepare_instants() {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/sha256.hpp"
@@ -260,6 +261,10 @@ const Fields<LearntFusion> kFusionContent = {
         "sensors", fusion_sensor_fields(), {.meaning = "in their order (below)", .required = true}),
     field<&LearntFusion::recommended>("recommended",
                                       {.meaning = "label of the best method", .otherwise = "none"}),
+    list_of<&LearntFusion::findings>(
+        "findings",
+        finding_fields(),
+        {.meaning = "about the recording and its sensors when this was learnt"}),
     list_of<&LearntFusion::algorithms>(
         "algorithms", fusion_algorithm_fields(), {.meaning = "that ran (below)", .required = true}),
     custom<LearntFusion, read_complete, write_complete>(

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libchar/core/document/fields.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/fusion/learnt.hpp"
 #include "libchar/scene/scene.hpp"
 
@@ -77,9 +78,10 @@ struct LearntFusion {
   double fault_free_s = 0;  ///< so long no sensor failed at the start of the run
   std::vector<LearntInput> inputs;
   std::vector<LearntSensor> sensors;
-  LearntTilt tilt;            ///< gyroscope empty: no tilt
-  std::string interpolation;  ///< of the alignment: sinc, cubic; empty: nothing is aligned
-  std::string recommended;    ///< label; empty: none
+  LearntTilt tilt;                ///< gyroscope empty: no tilt
+  std::string interpolation;      ///< of the alignment: sinc, cubic; empty: nothing is aligned
+  std::string recommended;        ///< label; empty: none
+  std::vector<Finding> findings;  ///< of the recording and its sensors, from which it was learnt
   std::vector<LearntAlgorithm> algorithms;
 
   const LearntAlgorithm* find(std::string_view label) const;

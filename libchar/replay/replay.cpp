@@ -564,6 +564,7 @@ ReplayResult Replay::collect() {
   if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, out.end_s());
   if (steps_) note_step_noise(steps_->result(), learnt_);
   out.learnt = learnt_;
+  out.learnt.findings = out.warnings.list();
   if (out.best && !out.offsets_decide) out.learnt.recommended = out.algorithms[*out.best].label;
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {

@@ -61,6 +61,33 @@ TEST_CASE("characterize the fixture: every file, and intervals that hold the tru
   }
 }
 
+TEST_CASE("characterize without -o makes LOG-report, and what it says to type next runs") {
+  const test::TemporaryFolder folder;
+  test::RunOptions there;
+  there.folder = folder.path().string();
+  const auto ran = test::run({"characterize", test::fixture("imu_at_rest.csv").string()}, there);
+  REQUIRE(ran.code == 0);
+  CHECK(std::filesystem::exists(folder / "imu_at_rest-report/report.json"));
+  const std::size_t at = ran.out.find("\nnext: sensorchar ");
+  REQUIRE(at != std::string::npos);
+  std::istringstream line(ran.out.substr(at + 18));
+  std::vector<std::string> words;
+  for (std::string word; line >> word;) words.push_back(word);
+  CHECK(test::run(words, there).code == 0);
+  // A folder of results and its report stand for the models in it.
+  const auto model = test::run({"model", "imu_at_rest-report", "--json"}, there);
+  const auto report = test::run({"model", "imu_at_rest-report/report.json", "--json"}, there);
+  REQUIRE(model.code == 0);
+  CHECK(parse_json(model.out, "model").at("models").size() == 2);
+  CHECK(parse_json(report.out, "report").at("models") ==
+        parse_json(model.out, "model").at("models"));
+  CHECK(test::run({"simulate", "imu_at_rest-report", "--samples", "3", "-o", "three.csv"}, there)
+            .code == 0);
+  CHECK(test::run({"model", "."}, there).code == 0);  // a folder of such folders
+  std::filesystem::create_directory(folder / "none");
+  CHECK(test::run({"model", "none"}, there).code == 3);
+}
+
 TEST_CASE("characterize gives the same bytes for the same input, measured times apart") {
   const test::TemporaryFolder folder;
   const std::string log = test::fixture("imu_at_rest.csv").string();

@@ -168,6 +168,21 @@ with tempfile.TemporaryDirectory() as folder:
     three[2][3000:] = [three[2][3000]] * 3000
     said, found = replay()
     expect(found == ["frozen_sensor"] and "c from 30" in said, f"array: a frozen sensor is not said: {said}")
+    expect('code: "frozen_sensor"' in (here / "array" / "fusion.yaml").read_text(), "fusion.yaml does not have it")
+
+    # What a log is fused from is said too, and what a sensor repeats while it hangs has no weight.
+    frozen_at = three[2][3000]
+    three[2][3000:] = [v + math.sin((3000 + i) / 50) for i, v in enumerate(noise(3000))]
+    replay()
+    three[2][3000:] = [frozen_at] * 3000
+    array.write_text("t[s],a,b,c\n" + "".join(
+        f"{i / RATE:.2f},{a:.4f},{b:.4f},{c:.4f}\n" for i, (a, b, c) in enumerate(zip(*three))))
+    fused = run("fuse", array, "--with", here / "array", "--algorithm", "mean", "-o", here / "fused.csv", "--force")
+    expect("c from 30" in fused.stderr, f"fuse: a frozen sensor is not said: {fused.stderr}")
+    errors = [float(row.split(",")[1]) - math.sin(i / 50)
+              for i, row in enumerate((here / "fused.csv").read_text().splitlines()[1:])]
+    rms = math.sqrt(sum(e * e for e in errors) / len(errors))
+    expect(rms < SD, f"fuse: RMSE {rms} with a frozen sensor, one alone has {SD}")
     three[0][::40] = [-999.0] * len(three[0][::40])
     said, found = replay()
     expect("missing_mark" in found and "--missing -999" in said, f"array: marks are not said: {said}")

@@ -132,11 +132,17 @@ TEST_CASE("replay: --json is the report itself, and the same scores come again")
     CHECK(printed["algorithms"][0][key] == repeated["algorithms"][0][key]);
 }
 
-TEST_CASE("replay: results are not overwritten unless --force, and -o is needed") {
+TEST_CASE("replay: without -o results go to a folder that is called after the scene") {
   const ReplayBench bench;
-  const auto without = bench.replay({"--algorithms", "mean"});
-  CHECK(without.code == 2);
-  CHECK_THAT(without.err, Contains("-o") && Contains("--explain"));
+  test::RunOptions there;
+  there.folder = bench.folder.path().string();
+  const auto ran = test::run({"replay", bench.scene, "--algorithms", "mean"}, there);
+  CHECK(ran.code == 0);
+  CHECK(labels(bench.report("scene-replay")) == libchar::Json({"mean"}));
+}
+
+TEST_CASE("replay: results are not overwritten unless --force") {
+  const ReplayBench bench;
   REQUIRE(bench.replay({"-o", bench.path("out"), "--algorithms", "mean"}).code == 0);
   const auto before = test::slurp(bench.folder / "out/report.json");
   const auto refused = bench.replay({"-o", bench.path("out"), "--algorithms", "median"});

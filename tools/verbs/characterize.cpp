@@ -9,6 +9,7 @@
 #include <set>
 
 #include "analysis_options.hpp"
+#include "help/next.hpp"
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/compare/runs.hpp"
 #include "libchar/characterize/compare/verification.hpp"
@@ -54,6 +55,7 @@ struct Outcome {
 fs::path folder_for(const CharacterizeVerb& verb,
                     const std::string& log,
                     std::set<std::string>& taken) {
+  if (verb.folder.empty()) return unused_file_name_for(default_folder(log), taken);
   if (verb.logs.size() == 1) return verb.folder;
   return fs::path(verb.folder) / unused_file_name_for(libchar::stem_of_log(log), taken);
 }
@@ -141,6 +143,7 @@ void run_one_by_one(Session& session,
     }
     print_beside(session, characterization_text(view, text_look()));
     say_written(session, paths_of(outputs), removed);
+    if (verb.logs.size() == 1) say_next(session, next_after(session, result, folder.string()));
   }
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
 }
@@ -288,8 +291,10 @@ void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {
                  ""});
 }
 
-void run_characterize(Session& session, const CharacterizeVerb& verb) {
+void run_characterize(Session& session, CharacterizeVerb verb) {
   const CharacterizeOptions options = finish(verb.analysis);
+  if (verb.folder.empty() && verb.pool) verb.folder = "runs-report";
+  if (verb.folder.empty() && verb.lot) verb.folder = "lot-report";
   refuse_standard_output("--output", verb.folder);
   if (verb.pool && verb.logs.size() < 2)
     throw Error(
@@ -312,12 +317,11 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
                  "recordings (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options
-      .add_text(
-          "-o,--output",
-          verb->folder,
-          "folder for the results (made when absent; with several logs one folder each inside)")
-      .value_name("DIR")
-      .required();
+      .add_text("-o,--output",
+                verb->folder,
+                "folder for the results (made when absent; with several logs one folder each "
+                "inside; default: LOG-report)")
+      .value_name("DIR");
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
   options.add_flag("--no-timing",

@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/file/log_files.hpp"
+#include "help/next.hpp"
 #include "libchar/core/text/shell_word.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/report/text/inspection_text.hpp"
@@ -42,12 +42,10 @@ std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) 
   if (info.time.rate_hz <= 0)
     return fmt::format(
         "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags);
-  const std::string folder = libchar::stem_of_log(info.file);
-  return fmt::format(
-      "  next: sensorchar characterize {}{} -o {}\n",
-      log,
-      flags,
-      libchar::shell_word((folder.empty() || folder == "-" ? "log" : folder) + "-report"));
+  return fmt::format("  next: sensorchar characterize {}{} -o {}\n",
+                     log,
+                     flags,
+                     libchar::shell_word(default_folder(info.file)));
 }
 
 void run_inspect(Session& session, const InspectVerb& verb) {

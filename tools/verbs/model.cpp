@@ -13,6 +13,7 @@
 #include "libchar/core/text/text_table.hpp"
 #include "libchar/export/exports.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/model/model_files.hpp"
 #include "libchar/model/model_json.hpp"
 #include "libchar/model/model_reader.hpp"
 #include "libchar/report/text/model_text.hpp"
@@ -37,11 +38,12 @@ struct ReadModels {
 
 ReadModels read_all(const ModelVerb& verb) {
   ReadModels read;
-  for (const std::string& file : verb.files) {
-    const std::vector<SensorModel> models = read_model_list(file);
-    read.models.insert(read.models.end(), models.begin(), models.end());
-    read.files.push_back(document_info(file));
-  }
+  for (const std::string& place : verb.files)
+    for (const std::string& file : model_files(place)) {
+      const std::vector<SensorModel> models = read_model_list(file);
+      read.models.insert(read.models.end(), models.begin(), models.end());
+      read.files.push_back(document_info(file));
+    }
   return read;
 }
 
@@ -207,8 +209,10 @@ std::vector<std::string> target_words() {
 
 std::function<void()> model_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ModelVerb>();
-  options.add_texts(
-      "FILE", verb->files, "model files (.sensor.yaml, .json); the axes of one device together");
+  options.add_texts("FILE",
+                    verb->files,
+                    "model files (.sensor.yaml, .json), or what characterize wrote (its folder, "
+                    "report.json); the axes of one device together");
   options.add_text("--to", verb->target, "target; --list names them")
       .value_name("NAME")
       .known_words(target_words());
@@ -229,7 +233,7 @@ VerbEntry verb_model() {
           model_options,
           {{"what a model says", "sensorchar model report/gyro_z.sensor.yaml"},
            {"the numbers of an IMU as Kalibr wants them, its z axes for all",
-            "sensorchar model report/*.sensor.yaml --to kalibr --axes z -o imu.yaml"}}};
+            "sensorchar model report --to kalibr --axes z -o imu.yaml"}}};
 }
 
 }  // namespace sensorchar

@@ -13,9 +13,11 @@
 #include <optional>
 
 #include "heap_meter.hpp"
+#include "help/next.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/shell_word.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/replay/fusion_file.hpp"
@@ -27,6 +29,7 @@
 #include "libchar/report/replay/replay_markdown.hpp"
 #include "libchar/report/replay/replay_text.hpp"
 #include "libchar/scene/text/scene_writer.hpp"
+#include "reading_options.hpp"
 #include "replay_source.hpp"
 #include "verb.hpp"
 
@@ -169,6 +172,17 @@ void write_scene(const Session& session,
   if (!verb.json) print_beside(session, fmt::format("wrote {}\n", printable(verb.scene_file)));
 }
 
+// The log fused by what is recommended; "" where nothing is, or where there is no log.
+std::string next_after(const ReplayVerb& verb, const Scene& scene, const ReplayResult& result) {
+  if (result.learnt.recommended.empty() || scene.recording.empty() || result.logs.empty())
+    return "";
+  return fmt::format("sensorchar fuse {}{} --with {} -o {}",
+                     shell_word(scene.recording),
+                     reading_flags(scene.reading, result.logs[0]),
+                     shell_word(verb.folder),
+                     shell_word(default_folder(scene.recording, "fused") + ".csv"));
+}
+
 // Runs everything and writes the reports; says which files.
 void run_and_report(Session& session,
                     const ReplayVerb& verb,
@@ -216,6 +230,7 @@ void run_and_report(Session& session,
   if (!removed.empty())
     written += fmt::format("\nremoved, of an earlier run: {}", fmt::join(removed, " "));
   if (!session.terminal.quiet()) print(written + "\n");
+  say_next(session, next_after(verb, scene, result));
 }
 
 void print_algorithms(const Session& session, bool json) {
@@ -225,14 +240,14 @@ void print_algorithms(const Session& session, bool json) {
   print(dump_json(document));
 }
 
-void run_replay(Session& session, const ReplayVerb& verb) {
+void run_replay(Session& session, ReplayVerb verb) {
   if (verb.list) return print_algorithms(session, verb.json);
   if (verb.source.path.empty())
     refuse_replay("SCENE", "which scene or recording?", "", "--list names the algorithms");
   const Scene scene = read_scene(verb);
   if (verb.explain) return print_plan(session, verb, scene, options_of(verb));
   if (verb.folder.empty() && verb.scene_file.empty())
-    refuse_replay("-o", "where do the results go?", "", "-o DIR, or --explain for the plan alone");
+    verb.folder = default_folder(verb.source.path, "replay");
   refuse_standard_output("--output", verb.folder);
   refuse_standard_output("--write-scene",
                          verb.scene_file,
@@ -256,7 +271,10 @@ std::vector<std::string> algorithm_names() {
 std::function<void()> replay_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReplayVerb>();
   add_replay_source(options, session, verb->source);
-  options.add_text("-o,--output", verb->folder, "folder for the results, made when absent")
+  options
+      .add_text("-o,--output",
+                verb->folder,
+                "folder for the results, made when absent (default: LOG-replay)")
       .value_name("DIR");
   options
       .add_texts("--algorithms",

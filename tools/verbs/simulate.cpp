@@ -16,6 +16,7 @@
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/log/write.hpp"
+#include "libchar/model/model_files.hpp"
 #include "libchar/report/text/simulation_text.hpp"
 #include "libchar/scene/model_simulation.hpp"
 #include "libchar/scene/recorded_signal.hpp"
@@ -162,6 +163,10 @@ void simulate_again(SimulateVerb& verb, Scene& scene) {
 
 // The scene that is simulated; of models, an empty one.
 Scene read_source(Session& session, SimulateVerb& verb) {
+  std::vector<std::string> files;
+  for (const std::string& source : verb.sources)
+    for (std::string& file : model_files(source)) files.push_back(std::move(file));
+  verb.sources = std::move(files);
   const bool scene_given = verb.sources.size() == 1 && is_scene_file(verb.sources[0]);
   Scene scene;
   if (scene_given) {

@@ -36,15 +36,23 @@ bool is_document(const std::filesystem::path& path) {
 }
 
 /// Names that a document gives as files written with it: plain ones.
-std::set<std::string> files_named_in(const Json& document) {
-  std::set<std::string> names;
+std::vector<std::string> files_named_in(const Json& document) {
+  std::vector<std::string> names;
   if (!document.is_object() || !document.contains("files") || !document["files"].is_array())
     return names;
   for (const Json& value : document["files"])
     if (value.is_string() && value.get<std::string>().find('/') == std::string::npos)
-      names.insert(value.get<std::string>());
+      names.push_back(value.get<std::string>());
   return names;
 }
+
+}  // namespace
+
+std::vector<std::string> detail::named_files(const std::string& document_file) {
+  return files_named_in(Json::parse(file_text(document_file, kMostReportBytes), nullptr, false));
+}
+
+namespace {
 
 /// What the documents that this set replaces name as theirs and its own do not: regular files of the folder.
 std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
@@ -54,9 +62,9 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
     now.insert(fs::path(output.path).filename().string());
     if (!is_document(output.path)) continue;
     if (std::error_code ignored; fs::is_regular_file(output.path, ignored))
-      before.merge(
-          files_named_in(Json::parse(file_text(output.path, kMostReportBytes), nullptr, false)));
-    now.merge(files_named_in(Json::parse(output.text, nullptr, false)));
+      for (std::string& name : detail::named_files(output.path)) before.insert(std::move(name));
+    for (std::string& name : files_named_in(Json::parse(output.text, nullptr, false)))
+      now.insert(std::move(name));
   }
   std::vector<std::string> stale;
   for (const std::string& name : before) {
@@ -178,7 +186,7 @@ void commit_together(const std::vector<WholeFile*>& files) {
   }
 }
 
-WrittenFile as_written(const OutputFile& file) {
+WrittenFile detail::as_written(const OutputFile& file) {
   Sha256 hash;
   hash.update(file.text);
   return {file.path, hash.finish()};
@@ -186,7 +194,7 @@ WrittenFile as_written(const OutputFile& file) {
 
 void name_files(Json& document, const std::vector<OutputFile>& outputs) {
   std::vector<WrittenFile> files;
-  for (const OutputFile& output : outputs) files.push_back(as_written(output));
+  for (const OutputFile& output : outputs) files.push_back(detail::as_written(output));
   name_files(document, files);
 }
 

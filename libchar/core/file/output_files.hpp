@@ -48,12 +48,20 @@ void commit_together(const std::vector<WholeFile*>& files);
 struct WrittenFile {
   std::string path, sha256;
 };
+namespace detail {
 WrittenFile as_written(const OutputFile& file);
+}
 
 /// Into a document among them: "files", their names in the folder (what a later run may remove), and "files_sha256", the digest of each
 /// but the documents themselves (what `check_results` looks at).
 void name_files(Json& document, const std::vector<OutputFile>& outputs);
 void name_files(Json& document, const std::vector<WrittenFile>& outputs);
+
+/// The names that a document in a file gives so, in their order; none where it is no such document. Throws Error(input) where it cannot
+/// be read.
+namespace detail {
+std::vector<std::string> named_files(const std::string& document_file);
+}
 
 /// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than others. Of a
 /// file, where it is one of them.

@@ -26,19 +26,6 @@ constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
   throw Error({ErrorKind::input, code, scene.file, what, got, hint});
 }
 
-void note_presence(Presence& presence, std::uint64_t first, std::span<const double> values) {
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!std::isfinite(values[k])) continue;
-    if (presence.samples++ == 0) presence.first = first + k;
-    presence.last = first + k;
-    presence.run = presence.run > 0 && values[k] == presence.value ? presence.run + 1 : 1;
-    presence.value = values[k];
-    if (presence.run <= presence.still) continue;
-    presence.still = presence.run;
-    presence.still_from = first + k + 1 - presence.run;
-  }
-}
-
 // What makes the numbers of a sensor worthless: marks for missing values, a dead band, a wrapping phase.
 void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, Findings& to) {
   for (const Finding& one : quality.findings)
@@ -57,7 +44,7 @@ struct FirstReading final : BlockSink {
     channels.resize(std::max(channels.size(), samples.channels.size()));
     meters.resize(channels.size());
     for (std::size_t c = 0; c < samples.channels.size(); ++c) {
-      note_presence(channels[c], samples.first, {samples.channels[c], samples.rows});
+      channels[c].push(samples.first, {samples.channels[c], samples.rows});
       meters[c].push({samples.channels[c], samples.rows});
     }
     keep(samples);
@@ -218,7 +205,7 @@ void SceneSource::read_even(Progress& progress) {
         (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(channel.unit);
   info_.logs.push_back(std::move(even.log));
   for (std::size_t k = 0; k < scene_->sensors.size(); ++k)
-    note_presence(info_.presence.emplace_back(), 0, kept_[k]);
+    info_.presence.emplace_back().push(0, kept_[k]);
 }
 
 void SceneSource::scan(Progress& progress) {

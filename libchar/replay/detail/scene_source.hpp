@@ -13,17 +13,10 @@
 #include "libchar/core/finding.hpp"
 #include "libchar/core/process/progress.hpp"
 #include "libchar/log/recording.hpp"
+#include "libchar/replay/detail/presence.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {
-
-/// Where a channel has samples.
-struct Presence {
-  std::uint64_t first = 0, last = 0, samples = 0;  ///< grid points; samples 0: nowhere
-  std::uint64_t still_from = 0, still = 0;         ///< its longest run of one value
-  std::uint64_t run = 0;                           ///< of the last value
-  double value = 0;                                ///< the last one
-};
 
 struct SourceInfo {
   double rate_hz = 0;

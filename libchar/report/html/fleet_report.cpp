@@ -353,7 +353,7 @@ std::vector<std::string> write_fleet_report(const FleetReport& report,
   check_outputs(paths, folder, {}, force);
   std::vector<OutputFile> texts = {{paths[0], fleet_html(report)}, {paths[3], ""}};
   WholeFile csv(paths[1], force), npz(paths[2], force);
-  std::vector<WrittenFile> files = {as_written(texts[0]),
+  std::vector<WrittenFile> files = {detail::as_written(texts[0]),
                                     written_table(report, write_coefficients_csv, csv),
                                     written_table(report, write_coefficients_npz, npz),
                                     {paths[3], ""}};

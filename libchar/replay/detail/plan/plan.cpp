@@ -8,7 +8,6 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/why_not.hpp"
@@ -129,32 +128,6 @@ fusion::Array describe_array(const Scene& scene,
 /// A sensor with samples at fewer instants than this share of the run measures nothing.
 constexpr double kLeastPresent = 1e-3;
 
-// One that stands still for long, as no other does, is frozen: a noise never gives one value so often, and a quantity
-// that rests between coarse steps does so for all. Faults that a scene puts in are there to be found.
-bool is_frozen(const Scene& scene,
-               const std::vector<Presence>& presence,
-               std::size_t i,
-               double from,
-               double to) {
-  constexpr double kShortest = 100, kShareOfRun = 0.01, kLongerThanOthers = 20;
-  if (!scene.faults.empty() || presence.size() < 3) return false;
-  std::vector<double> others;
-  for (std::size_t k = 0; k < presence.size(); ++k)
-    if (k != i) others.push_back(static_cast<double>(presence[k].still));
-  const double usual = median_in_place(others, Middle::upper);
-  const auto begins = static_cast<double>(presence[i].still_from);
-  const double inside =
-      std::min(to, begins + static_cast<double>(presence[i].still)) - std::max(from, begins);
-  return inside > std::max({kShortest, kShareOfRun * (to - from), kLongerThanOthers * usual});
-}
-
-std::string still_words(const std::string& name, const Presence& at, double rate_hz) {
-  return fmt::format("{} from {} to {} s",
-                     name,
-                     place_text(static_cast<double>(at.still_from) / rate_hz),
-                     place_text(static_cast<double>(at.still_from + at.still) / rate_hz));
-}
-
 // A dead sensor must not leave every instant of the others incomplete.
 std::vector<Eigen::Index> live_sensors(const Scene& scene,
                                        const Instants& instants,
@@ -169,7 +142,8 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene,
   const double from = sample(plan.run_from), to = sample(plan.run_to);
   for (std::size_t i = 0; i < source.presence.size(); ++i) {
     const Presence& at = source.presence[i];
-    if (is_frozen(scene, source.presence, i, from, to)) {
+    if (scene.faults.empty() &&
+        is_frozen(source.presence, i, from, to)) {  // else it is to be found
       plan.warnings.add(
           "frozen_sensor",
           "sensors that stand still where the others move were left out of everything",

@@ -1,0 +1,105 @@
+#include "help/next.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "help/flag_names.hpp"
+#include "libchar/characterize/judgement.hpp"
+#include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/core/error.hpp"
+#include "libchar/core/file/log_files.hpp"
+#include "libchar/core/text/shell_word.hpp"
+#include "libchar/export/exports.hpp"
+
+namespace sensorchar {
+namespace {
+
+using namespace libchar;
+
+/// " --still auto": what mends the bad findings, each once.
+std::string mending_flags(const Characterization& result) {
+  std::string flags;
+  std::set<std::string> given;
+  for (const ChannelResult& channel : result.channels)
+    for (const Finding& one : judge(channel).findings) {
+      if (one.severity != Severity::bad) continue;
+      for (const Finding::Help& help : one.help)
+        for (const Finding::Setting& setting : help.options) {
+          const std::string flag =
+              " " + with_flags("`" + setting.option + "`") + " " + shell_word(setting.value);
+          if (given.insert(flag).second) flags += flag;
+        }
+    }
+  return flags;
+}
+
+/// The command as it was given, its results replaced.
+std::string command_again(const Session& session,
+                          const std::string& flags,
+                          const std::string& folder) {
+  std::string out = "sensorchar";
+  bool forced = false, placed = false;
+  for (std::size_t i = 1; i < session.command.size(); ++i) {
+    const std::string& word = session.command[i];
+    forced |= word == "--force";
+    placed |= word.starts_with("-o") || word.starts_with("--output");
+    out += " " + shell_word(word);
+  }
+  out += flags;
+  if (!placed) out += " -o " + shell_word(folder);
+  return forced ? out : out + " --force";
+}
+
+/// Do the models make a file for a target as they are?
+bool exports_to(const Characterization& result, const char* target) {
+  std::vector<SensorModel> models;
+  for (const ChannelResult& c : result.channels)
+    if (c.fit) models.push_back(sensor_model_from(c, result.log));
+  try {
+    export_models(find_export_target(target), models, {});
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// " -c gyro_x,gyro_y": curves in unlike units share no axis.
+std::string alike_flag(const Characterization& result, const std::string& unit) {
+  std::string names;
+  std::size_t alike = 0;
+  for (const ChannelResult& c : result.channels) {
+    if (c.channel.unit != unit) continue;
+    names += (alike++ == 0 ? "" : ",") + c.channel.name;
+  }
+  return alike == result.channels.size() ? "" : " -c " + shell_word(names);
+}
+
+}  // namespace
+
+std::string default_folder(const std::string& input, const std::string& kind) {
+  const std::string stem = stem_of_log(input);
+  return (stem.empty() || stem == "-" || stem == "." || stem == ".." ? "log" : stem) + "-" + kind;
+}
+
+std::string next_after(const Session& session,
+                       const Characterization& result,
+                       const std::string& folder) {
+  if (const std::string flags = mending_flags(result); !flags.empty())
+    return command_again(session, flags, folder);
+  const auto usable =
+      std::find_if(result.channels.begin(), result.channels.end(), [](const auto& c) {
+        return c.fit && worst_of(judge(c).findings) != Severity::bad;
+      });
+  if (usable == result.channels.end()) return "";
+  const std::string words = shell_word(folder);
+  if (exports_to(result, "kalibr")) return "sensorchar model " + words + " --to kalibr";
+  return "sensorchar plot " + words + alike_flag(result, usable->channel.unit) + " -o " +
+         shell_word(folder + ".svg");
+}
+
+void say_next(const Session& session, const std::string& command) {
+  if (!command.empty()) print_beside(session, "next: " + command + "\n");
+}
+
+}  // namespace sensorchar

@@ -1,0 +1,24 @@
+#pragma once
+// Where results go when nobody says so, and what to type next.
+
+#include <string>
+#include <vector>
+
+#include "libchar/characterize/characterization.hpp"
+#include "session.hpp"
+
+namespace sensorchar {
+
+/// "imu-report" of "logs/imu.csv": in the current folder, for results of this kind.
+std::string default_folder(const std::string& input, const std::string& kind = "report");
+
+/// Of a characterization in a folder: the same command with what mends the worst that was found, else
+/// the file of an IMU for Kalibr, else a figure. "" where nothing could be fitted.
+std::string next_after(const Session& session,
+                       const libchar::Characterization& result,
+                       const std::string& folder);
+
+/// The line that says so; nothing when quiet, or for "".
+void say_next(const Session& session, const std::string& command);
+
+}  // namespace sensorchar
