@@ -13,6 +13,7 @@
 #include "colour.hpp"
 #include "heap_meter.hpp"
 #include "help/flag_names.hpp"
+#include "help/marked_line.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
@@ -199,7 +200,9 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
     // An error after a signal is its consequence: the input of a pipe ended early.
     if (stop_signal() != 0) return stopped(stop_signal());
     const libchar::Problem problem = with_flags(with_curve_hint(session, error.problem()));
-    return fail(libchar::one_line(with_own_hint(session, problem), colours(STDERR_FILENO)),
+    const std::string line =
+        libchar::one_line(with_own_hint(session, problem), colours(STDERR_FILENO));
+    return fail(::isatty(STDERR_FILENO) == 1 ? line + marked_line(error.problem()) : line,
                 exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return stopped(cancelled.signal);

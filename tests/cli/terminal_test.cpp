@@ -1,6 +1,7 @@
 // What the program shows: help, widths, colour, quiet, hints.
 
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -195,4 +196,29 @@ TEST_CASE("hints name flags of the verb only") {
       CHECK_THAT(flags, Contains(ran.err.substr(at, end - at) + " "));
     }
   }
+}
+
+TEST_CASE("on a terminal an error of a text shows the line and marks the column") {
+  const TerminalBench bench;
+  const std::string log = bench.path("broken.csv");
+  std::ofstream(log) << "t,\xc3\xa4\n1,2\n2,\xc3\xbc"
+                        "3\n";
+  const auto shown =
+      test::run_words({"script", "-qec", test::program() + " inspect " + log, "/dev/null"});
+  CHECK_THAT(shown.out,
+             Contains("  | 2,\xc3\xbc"
+                      "3") &&
+                 Contains("\n  |   ^"));
+  CHECK_THAT(test::run({"inspect", log}).err, !Contains("  |"));  // a pipe gets one line
+}
+
+TEST_CASE("explain: findings and errors by their codes") {
+  CHECK_THAT(test::run({"explain", "stuck"}).out, Contains("the link hung"));
+  const auto both = test::run({"explain", "E0304", "stuck", "--json"});
+  REQUIRE(both.code == 0);
+  const auto document = nlohmann::json::parse(both.out);
+  CHECK(document["kinds"][0]["code"] == "stuck");
+  CHECK(document["errors"][0]["code"] == "E0304");
+  CHECK(document["errors"][0]["exit_code"] == "3");
+  CHECK_THAT(test::run({"explain", "stuk"}).err, Contains("did you mean stuck"));
 }

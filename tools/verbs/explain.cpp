@@ -1,10 +1,12 @@
-// explain [CODE…]: what a finding means, what it does to the numbers, and what to do.
+// explain [CODE…]: what a finding means, what it does to the numbers, and what to do; what an error means.
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "help/error_page.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/finding.hpp"
 #include "libchar/core/text/spelling.hpp"
@@ -20,24 +22,59 @@ struct ExplainVerb {
   bool json = false;
 };
 
-std::vector<FindingKind> chosen(const std::vector<std::string>& codes) {
-  const auto all = finding_kinds();
-  if (codes.empty()) return {all.begin(), all.end()};
-  std::vector<FindingKind> out;
-  for (const std::string& code : codes) {
-    const FindingKind* kind = find_finding_kind(code);
-    if (kind != nullptr) {
-      out.push_back(*kind);
-      continue;
+struct KindOfError {
+  std::string_view code, exit_code, meaning;
+};
+
+struct Explained {
+  std::vector<FindingKind> findings;
+  std::vector<KindOfError> errors;
+};
+
+/// The rows "| E0312 | 3 | a number … | where it is raised |" of the page.
+std::vector<KindOfError> kinds_of_errors() {
+  std::vector<KindOfError> out;
+  for (std::string_view rest = error_page(); !rest.empty();) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    if (!line.starts_with("| E")) continue;
+    std::vector<std::string_view> cells;
+    for (std::size_t at = 2; cells.size() < 3;) {
+      const std::size_t end = line.find(" | ", at);
+      cells.push_back(line.substr(at, end - at));
+      at = end + 3;
     }
-    std::vector<std::string> known;
-    for (const FindingKind& one : all) known.emplace_back(one.code);
-    throw Error({ErrorKind::usage,
-                 "E0202",
-                 "explain",
-                 "no such finding",
-                 code,
-                 did_you_mean(nearest(code, known), "sensorchar explain lists them all")});
+    out.push_back({cells[0], cells[1], cells[2]});
+  }
+  return out;
+}
+
+[[noreturn]] void refuse_code(const std::string& code) {
+  std::vector<std::string> known;
+  for (const FindingKind& one : finding_kinds()) known.emplace_back(one.code);
+  for (const KindOfError& one : kinds_of_errors()) known.emplace_back(one.code);
+  throw Error({ErrorKind::usage,
+               "E0202",
+               "explain",
+               "no such finding or error",
+               code,
+               did_you_mean(nearest(code, known), "sensorchar explain lists all findings")});
+}
+
+Explained chosen(const std::vector<std::string>& codes) {
+  const auto all = finding_kinds();
+  if (codes.empty()) return {{all.begin(), all.end()}, {}};
+  const std::vector<KindOfError> errors = kinds_of_errors();
+  Explained out;
+  for (const std::string& code : codes) {
+    const auto error = std::find_if(
+        errors.begin(), errors.end(), [&](const KindOfError& one) { return one.code == code; });
+    if (const FindingKind* kind = find_finding_kind(code))
+      out.findings.push_back(*kind);
+    else if (error != errors.end())
+      out.errors.push_back(*error);
+    else
+      refuse_code(code);
   }
   return out;
 }
@@ -73,23 +110,33 @@ Json as_json(const FindingKind& kind) {
   return out;
 }
 
-void run_explain(const ExplainVerb& verb) {
-  const std::vector<FindingKind> kinds = chosen(verb.codes);
+std::string as_text(const KindOfError& kind) {
+  return fmt::format("{} (error, exit code {}): {}\n", kind.code, kind.exit_code, kind.meaning);
+}
+
+void run_explain(const Session& session, const ExplainVerb& verb) {
+  const Explained kinds = chosen(verb.codes);
   if (verb.json) {
-    Json document = {{"format", "finding-kinds"}, {"version", 1}, {"findings", Json::array()}};
-    for (const FindingKind& kind : kinds) document["findings"].push_back(as_json(kind));
+    Json document = document_head(session, "explanation", {});
+    document["kinds"] = Json::array();
+    for (const FindingKind& kind : kinds.findings) document["kinds"].push_back(as_json(kind));
+    for (const KindOfError& kind : kinds.errors)
+      document["errors"].push_back(
+          {{"code", kind.code}, {"exit_code", kind.exit_code}, {"meaning", kind.meaning}});
     return print(dump_json(document));
   }
   std::string text;
-  for (const FindingKind& kind : kinds) text += as_text(kind);
+  for (const FindingKind& kind : kinds.findings) text += as_text(kind);
+  for (const KindOfError& kind : kinds.errors) text += as_text(kind);
   print_text(text);
 }
 
-std::function<void()> explain_options(VerbOptions& options, Session& /*session*/) {
+std::function<void()> explain_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ExplainVerb>();
-  options.add_texts("CODE", verb->codes, "codes of findings, as JSON and pages give them (all)");
+  options.add_texts(
+      "CODE", verb->codes, "codes of findings, as JSON and pages give them (all), or of errors");
   options.add_flag("--json", verb->json, "as JSON");
-  return [verb] { run_explain(*verb); };
+  return [&session, verb] { run_explain(session, *verb); };
 }
 
 }  // namespace
@@ -97,10 +144,11 @@ std::function<void()> explain_options(VerbOptions& options, Session& /*session*/
 VerbEntry verb_explain() {
   return {11,
           "explain",
-          "What a finding means, and what to do about it",
+          "What a finding or an error means, and what to do about it",
           explain_options,
           {{"one of them", "sensorchar explain held_values"},
-           {"all of them, for a script", "sensorchar explain --json"}}};
+           {"an error", "sensorchar explain E0304"},
+           {"all findings, for a script", "sensorchar explain --json"}}};
 }
 
 }  // namespace sensorchar

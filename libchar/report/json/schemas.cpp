@@ -1,5 +1,6 @@
 #include "libchar/report/json/schemas.hpp"
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "libchar/benchmark/bench_document.hpp"
@@ -144,6 +145,20 @@ Json fuse_schema() {
   return out;
 }
 
+Json texts_schema(std::initializer_list<const char*> keys) {
+  Json out = {{"type", "object"}, {"required", keys}, {"properties", Json::object()}};
+  for (const char* key : keys) out["properties"][key] = {{"type", "string"}};
+  return out;
+}
+
+Json explanation_schema() {
+  Json kind = texts_schema({"code", "severity", "title", "meaning", "remedy"});
+  kind["properties"]["effects"] = list_of_schema(texts_schema({"quantity", "direction"}));
+  Json out = of_format("explanation", {{"kinds", list_of_schema(std::move(kind))}});
+  out["properties"]["errors"] = list_of_schema(texts_schema({"code", "exit_code", "meaning"}));
+  return out;
+}
+
 Json bench_schema() {
   Json out = schema_of(bench_fields().rows);
   add_files(out["properties"]);
@@ -208,6 +223,7 @@ Json schemas() {
       "Fusion algorithms with what they need",
       of_format("fusion-algorithms",
                 {{"algorithms", list_of_schema(schema_of(algorithm_entry_fields().rows))}}));
+  add_document(all, "explanation", "What findings and errors mean", explanation_schema());
   add_file(all, "bench", "bench.json of benchmarks", bench_schema());
   add_file(
       all, "sensor-model", "A sensor model: CHANNEL.sensor.yaml (docs/models.md)", model_schema());

@@ -229,6 +229,11 @@ Instants::Instants(const Scene& scene, Progress& progress)
       info_.logs.push_back(track_->log);
       reference_units = track_->units;
       info_.reference_use = "interpolated between its own samples";
+      const double start_s = track_->start_s + scene.reference->lag_s;
+      const double length_s = static_cast<double>(info_.count) / info_.rate_hz;
+      const double covers_s = static_cast<double>(track_->values[0].size()) / track_->rate_hz;
+      if (!scene.reference->estimate_lag && (start_s > length_s || start_s + covers_s < 0))
+        refuse_apart(length_s);
       if (track_->rate_hz < 0.5 * source.rate_hz) fit_slow_reference();
     }
     const std::size_t inputs = scene.reference->mean ? 1 : scene.reference->channels.size();
@@ -296,13 +301,26 @@ void Instants::fit_slow_reference() {
   info_.reference_use =
       fmt::format("the sensors' means over its intervals of {}", duration_text(interval_s, 6));
   note_partial_intervals(length_s);
-  if (info_.count == 0)
-    throw Error({ErrorKind::input,
-                 "E0902",
-                 scene_->file,
-                 "reference and recording have no time in common",
-                 "",
-                 "their stamps must count from one epoch; from_s and to_s choose stretches"});
+  if (info_.count == 0) refuse_apart(length_s);
+}
+
+// A log that counts from its own start beside one that counts from 1970 is the usual cause.
+void Instants::refuse_apart(double length_s) const {
+  const double start_s = track_->start_s + scene_->reference->lag_s;
+  const double end_s = start_s + static_cast<double>(track_->values[0].size()) / track_->rate_hz;
+  const bool behind = start_s > length_s;
+  throw Error(
+      {ErrorKind::input,
+       "E0902",
+       scene_->file,
+       fmt::format("reference and recording have no time in common: the reference {} {} {}",
+                   behind ? "begins" : "ends",
+                   duration_text(behind ? start_s - length_s : -end_s),
+                   behind ? "after the recording ends" : "before the recording begins"),
+       "",
+       fmt::format("where one of them counts from its own start, lag_s: {} puts their first "
+                   "samples together; from_s and to_s choose stretches",
+                   brief_text(scene_->reference->lag_s - start_s, 12))});
 }
 
 // The first and the last interval may reach beyond the recording: a mean over a part of one is no mean over it.

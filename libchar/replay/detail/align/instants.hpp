@@ -73,6 +73,7 @@ class Instants {
 
  private:
   void fit_slow_reference();
+  [[noreturn]] void refuse_apart(double length_s) const;
   void note_partial_intervals(double length_s);
   void prepare(Progress& progress);
   void convert_tilt();
