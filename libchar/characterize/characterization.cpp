@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "libchar/characterize/detail/channel_stages.hpp"
+#include "libchar/characterize/detail/slow_channels.hpp"
 #include "libchar/characterize/detail/still.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -210,6 +211,10 @@ Characterization characterize(const std::string& path,
     };
   Characterization result = characterize_source(source, options, progress);
   if (chosen.channels.size() > options.reading.channels.size()) drop_temperature(result);
+  CharacterizeOptions as_read = options;
+  as_read.reading = chosen;
+  as_read.still = {};
+  read_slow_channels_alone(path, as_read, result, progress);
   if (stretch) note_stretch(std::move(*stretch), result);
   return result;
 }

@@ -233,7 +233,7 @@ CharacterizationView characterization_view(const Characterization& result) {
   if (rate_hz > 0) out.duration_s = static_cast<double>(result.log.samples) / rate_hz;
   Factors factors;
   for (const ChannelResult& channel : result.channels) {
-    out.channels.push_back(channel_view(channel, rate_hz, factors));
+    out.channels.push_back(channel_view(channel, result.log.rate_hz_of(channel.channel), factors));
     if (result.limits) out.channels.back().data_sheet = data_sheet_curve(channel, *result.limits);
   }
   std::vector<Judgement> judged;

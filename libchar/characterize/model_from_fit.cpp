@@ -91,7 +91,7 @@ SensorModel sensor_model_from_curve(const Channel& channel,
 SensorModel sensor_model_from(const ChannelResult& channel, const LogInfo& log) {
   const NoiseFit& fit = channel.fit.value();
   SensorModel model = sensor_model_from_curve(channel.channel, fit, "fit of a recording", log);
-  if (log.time.rate_hz > 0) model.rate_hz = log.time.rate_hz;
+  if (const double rate_hz = log.rate_hz_of(channel.channel); rate_hz > 0) model.rate_hz = rate_hz;
   model.resolution = channel.quality.resolution;
   set_saturation(model, channel.quality);
   model.mean = channel.quality.mean;

@@ -187,6 +187,10 @@ void Findings::merge(const Findings& other) {
   }
 }
 
+void Findings::remove(std::string_view code) {
+  std::erase_if(list_, [&](const Finding& one) { return one.code == code; });
+}
+
 const Finding* Findings::find(std::string_view code) const {
   const auto found = std::find_if(
       list_.begin(), list_.end(), [&](const Finding& one) { return one.code == code; });

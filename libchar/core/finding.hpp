@@ -144,6 +144,8 @@ class Findings {
            std::string_view place = {},
            std::uint64_t count = 1);
   void merge(const Findings& other);
+  /// What is no longer so.
+  void remove(std::string_view code);
   const std::vector<Finding>& list() const { return list_; }
   bool empty() const { return list_.empty(); }
   const Finding* find(std::string_view code) const;

@@ -367,7 +367,7 @@ void refuse_without_samples(const LogInfo& info, const ReadOptions& options) {
 
 /// Refuses a whole log without a finite value; warns of channels without one.
 void judge_values(const Watch& watch,
-                  const LogInfo& info,
+                  LogInfo& info,
                   const ReadOptions& options,
                   Findings& warnings) {
   if (info.samples == 0) return;
@@ -379,13 +379,15 @@ void judge_values(const Watch& watch,
       warnings.add("no_finite_value",
                    "channels without any finite value",
                    "channel " + info.channels[c].name);
-  for (std::size_t c = 0; c < watch.seen.size(); ++c)
-    if (watch.presence[c].slow())
-      warnings.add(
-          "slow_channel",
-          "channels slower than the rows of their table: most of their samples are missing "
-          "here; read alone (`channels` NAME) they have a grid of their own",
-          fmt::format("channel {}, every {} rows", info.channels[c].name, watch.presence[c].usual));
+  for (std::size_t c = 0; c < watch.seen.size(); ++c) {
+    if (!watch.presence[c].slow()) continue;
+    info.channels[c].every = watch.presence[c].usual;
+    warnings.add(
+        "slow_channel",
+        "channels slower than the rows of their table: most of their samples are missing "
+        "here; read alone (`channels` NAME) they have a grid of their own",
+        fmt::format("channel {}, every {} rows", info.channels[c].name, watch.presence[c].usual));
+  }
 }
 
 }  // namespace

@@ -21,6 +21,9 @@ struct Channel {
       name;  ///< never empty; "c0", "c1"… when the log has no names (c0 is the first non-time column)
   std::string unit;      ///< as written in the log, "" when it says nothing
   bool integer = false;  ///< every value is an integer written as one (counts)
+  std::uint64_t every =
+      1;  ///< grid points from one of its values to the next, where it is slower than the rows of its table
+  double rate_hz = 0;  ///< of its own, where it was read on a grid of its own; 0: that of the log
 };
 
 /// One stream of messages, or one table, of a log that holds several: each has a clock of its own.
@@ -79,6 +82,10 @@ struct LogInfo {
       guesses;  ///< what was inferred and not read, in sentences ("time unit: us, from the magnitude of the stamps")
   std::vector<std::string>
       dialect;  ///< what was understood of the file ("delimiter ;", "decimal comma", "header in line 3")
+
+  double rate_hz_of(const Channel& channel) const {
+    return channel.rate_hz > 0 ? channel.rate_hz : time.rate_hz;
+  }
 };
 
 /// A whole recording in memory, each channel contiguous.

@@ -100,27 +100,31 @@ const Fields<DescribedChannel>& described_channel_fields() {
   static const auto kSampled = when<[](const T& c) { return 0 < c.quality.samples; }>;
   static const auto kVaries =
       when<[](const T& c) { return c.quality.minimum < c.quality.maximum; }>;
-  static const Fields<T> rows = always(Fields<T>{
-      field<&T::channel, &Channel::name>("name"),
-      field<&T::channel, &Channel::unit>("unit"),
-      field<&T::quality, &Q::missing>("missing"),
-      field<&T::quality, &Q::beyond>("beyond_range",
-                                     {.meaning = "of the missing ones: too large to be measured"}),
-      field<&T::quality, &Q::samples>("samples"),
-      field<&T::channel, &Channel::integer>("integer"),
-      field<&T::quality, &Q::mean>("mean"),
-      field<&T::quality, &Q::standard_deviation>("standard_deviation"),
-      field<&T::quality, &Q::minimum>("minimum", {.known = kSampled}),
-      field<&T::quality, &Q::maximum>("maximum", {.known = kSampled}),
-      field<&T::quality, &Q::resolution>("resolution"),
-      field<&T::quality, &Q::distinct_values>("distinct_values"),
-      field<&T::quality, &Q::saturated>("saturated"),
-      field<&T::quality, &Q::longest_stuck>("longest_stuck"),
-      field<&T::quality, &Q::difference_kurtosis>("difference_kurtosis", {.known = kVaries}),
-      field<&T::quality, &Q::float32>("float32"),
-      field<&T::quality, &Q::float32_step>("float32_step"),
-      list_of<&T::quality, &Q::findings>("findings", finding_fields()),
-  });
+  static const Fields<T> own = {field<&T::channel, &Channel::rate_hz>(
+      "own_rate_hz", {.unit = "Hz", .meaning = "of a channel on a grid of its own"})};
+  static const Fields<T> rows = joined(
+      always(Fields<T>{
+          field<&T::channel, &Channel::name>("name"),
+          field<&T::channel, &Channel::unit>("unit"),
+          field<&T::quality, &Q::missing>("missing"),
+          field<&T::quality, &Q::beyond>(
+              "beyond_range", {.meaning = "of the missing ones: too large to be measured"}),
+          field<&T::quality, &Q::samples>("samples"),
+          field<&T::channel, &Channel::integer>("integer"),
+          field<&T::quality, &Q::mean>("mean"),
+          field<&T::quality, &Q::standard_deviation>("standard_deviation"),
+          field<&T::quality, &Q::minimum>("minimum", {.known = kSampled}),
+          field<&T::quality, &Q::maximum>("maximum", {.known = kSampled}),
+          field<&T::quality, &Q::resolution>("resolution"),
+          field<&T::quality, &Q::distinct_values>("distinct_values"),
+          field<&T::quality, &Q::saturated>("saturated"),
+          field<&T::quality, &Q::longest_stuck>("longest_stuck"),
+          field<&T::quality, &Q::difference_kurtosis>("difference_kurtosis", {.known = kVaries}),
+          field<&T::quality, &Q::float32>("float32"),
+          field<&T::quality, &Q::float32_step>("float32_step"),
+          list_of<&T::quality, &Q::findings>("findings", finding_fields()),
+      }),
+      own);
   return rows;
 }
 

@@ -321,7 +321,7 @@
     return out;
   }
   function traceChart(index, axis, unit) {
-    const t = report.trace.channels[index], c = colours(), rate = report.trace.rate_hz || 1, seconds = t.samples_per_block / rate, length = t.low.length * seconds;
+    const t = report.trace.channels[index], c = colours(), rate = t.own_rate_hz || report.trace.rate_hz || 1, seconds = t.samples_per_block / rate, length = t.low.length * seconds;
     const [scale, word] = report.trace.rate_hz === null || !(report.trace.rate_hz > 0) ? [1, "sample"] : length > 172800 ? [86400, "time, d"] : length > 7200 ? [3600, "time, h"] : length > 600 ? [60, "time, min"] : [1, "time, s"];
     const one = t.samples_per_block === 1, middle = (i) => ((i + (one ? 0 : 0.5)) * seconds) / scale;
     const low = [], high = [];

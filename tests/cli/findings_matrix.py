@@ -153,6 +153,26 @@ with tempfile.TemporaryDirectory() as folder:
         expect(low - wider <= truth <= high + wider,
                f"{kind}: N {white['value']} [{low}, {high}] after {remedy[1]}, true {truth}")
 
+    # A slow channel beside a fast one has a rate of its own in every verb: what it gives is what it gives alone.
+    slow = noise(1500, N)  # at 1 Hz: the white noise of all others
+    table, alone = here / "slow.csv", here / "alone.csv"
+    fast = noise(150000)
+    table.write_text("t[s],gyro[deg/s],temp[degC]\n" + "".join(
+        f"{i / RATE:.2f},{v:.5f},{f'{slow[i // 100]:.6f}' if i % 100 == 0 else ''}\n" for i, v in enumerate(fast)))
+    alone.write_text("t[s],temp[degC]\n" + "".join(f"{i},{v:.6f}\n" for i, v in enumerate(slow)))
+    run("characterize", table, "-o", here / "slow")
+    run("characterize", alone, "-o", here / "alone")
+    both = json.loads((here / "slow" / "report.json").read_text())
+    single = json.loads((here / "alone" / "report.json").read_text())
+    term = both["fit"]["channels"][1]["white_noise"]
+    expect(term == single["fit"]["channels"][0]["white_noise"], f"slow channel: N {term} is not that of it alone")
+    expect("own_grid" in codes(both["findings"]), "slow channel: its own grid is not said")
+    for file in ("slow/temp.sensor.yaml", "alone/temp.sensor.yaml"):
+        text = (here / file).read_text()
+        expect("rate_hz: 1\n" in text or "rate_hz: 1.0\n" in text, f"{file}: its rate")
+    fitted = json.loads(run("fit", table, "--json").stdout)["channels"][1]["white_noise"]["value"]
+    expect(fitted == term["value"], f"slow channel: fit says {fitted}, characterize {term['value']}")
+
     # What makes samples worthless, and a sensor that freezes, are known to the replay of an array.
     three = [[v + math.sin(i / 50) for i, v in enumerate(noise(6000))] for _ in range(3)]
     array = here / "array.csv"

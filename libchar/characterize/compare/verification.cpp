@@ -62,7 +62,7 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
                                 std::uint64_t index,
                                 const std::shared_ptr<const TemperatureRecord>& temperature) {
   ArraySimulation simulation;
-  simulation.rate_hz = log.time.rate_hz;
+  simulation.rate_hz = log.rate_hz_of(recorded.channel);
   simulation.samples = std::max<std::uint64_t>(recorded.fit->samples, 2);
   simulation.seed = how.seed + (index << 32U);
   simulation.sensors = {{recorded.channel.name, noise_of(recorded, log), {1}}};
@@ -76,7 +76,7 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
   MeansAdded means(*recorded.fit, simulation);
   for (auto columns = simulator.next(kRows); !columns.empty(); columns = simulator.next(kRows))
     stage.push(means.added(columns[0]));
-  return stage.finish(recorded.channel, log.time.rate_hz);
+  return stage.finish(recorded.channel, simulation.rate_hz);
 }
 
 // The model is the truth of the simulation; but how much of a measured shape's beginning is the

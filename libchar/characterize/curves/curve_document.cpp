@@ -231,15 +231,19 @@ const Fields<TraceOfChannel>& trace_fields() {
       field<&TraceMark::to_s>("to_s"),
       field<&TraceMark::label>("label"),
   });
-  static const Fields<T> rows = always(Fields<T>{
-      field<&T::name>("name"),
-      field<&T::unit>("unit"),
-      field<&T::trace, &Trace::block>("samples_per_block", {.range = kPositive}),
-      field<&T::trace, &Trace::low>("low", {.meaning = "smallest sample of each block"}),
-      field<&T::trace, &Trace::high>("high", {.meaning = "largest"}),
-      written<T, write_missing>("missing", "pairs", {.meaning = "block, missing samples"}),
-      list_of<&T::marks>("marks", marks),
-  });
+  static const Fields<T> own = {field<&T::own_rate_hz>(
+      "own_rate_hz", {.unit = "Hz", .meaning = "of a channel on a grid of its own"})};
+  static const Fields<T> rows = joined(
+      always(Fields<T>{
+          field<&T::name>("name"),
+          field<&T::unit>("unit"),
+          field<&T::trace, &Trace::block>("samples_per_block", {.range = kPositive}),
+          field<&T::trace, &Trace::low>("low", {.meaning = "smallest sample of each block"}),
+          field<&T::trace, &Trace::high>("high", {.meaning = "largest"}),
+          written<T, write_missing>("missing", "pairs", {.meaning = "block, missing samples"}),
+          list_of<&T::marks>("marks", marks),
+      }),
+      own);
   return rows;
 }
 

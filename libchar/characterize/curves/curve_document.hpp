@@ -65,6 +65,7 @@ struct TraceOfChannel {
   std::string name, unit;
   Trace trace;
   std::vector<TraceMark> marks;
+  double own_rate_hz = 0;  ///< of a channel on a grid of its own; 0: the log's
 };
 
 /// A recording's channel against a simulation of its model.

@@ -92,7 +92,8 @@ std::string overview_table(const CharacterizationView& view) {
       "cannot tell this term from another or contradicts it; or the noise terms do not describe "
       "the recording.";
   for (std::size_t i = 0; i < view.channels.size(); ++i)
-    add_channel(out, view.channels[i], i, view.result->log.time.rate_hz);
+    add_channel(
+        out, view.channels[i], i, view.result->log.rate_hz_of(view.channels[i].result->channel));
   return html_table(out, {.css = "overview cards", .cards = true});
 }
 

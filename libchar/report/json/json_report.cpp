@@ -44,7 +44,8 @@ std::vector<double> for_drawing(const std::vector<double>& values, int digits) {
 
 TraceOfChannel trace_of(const ChannelView& view) {
   const ChannelResult& channel = *view.result;
-  TraceOfChannel out{channel.channel.name, channel.trace_unit, channel.trace, view.marks};
+  TraceOfChannel out{
+      channel.channel.name, channel.trace_unit, channel.trace, view.marks, channel.channel.rate_hz};
   Trace& trace = out.trace;
   double least = INFINITY, most = -INFINITY;
   for (std::size_t i = 0; i < trace.low.size(); ++i) {

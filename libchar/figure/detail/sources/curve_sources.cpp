@@ -160,7 +160,8 @@ void add_traces(FigureSource& out, const MapReader& trace) {
     SourceTrace one;
     one.channel = read.name;
     one.unit = usual_figure_unit(read.unit);
-    one.block_s = static_cast<double>(read.trace.block) / (rate_hz > 0 ? rate_hz : 1);
+    const double own_hz = read.own_rate_hz > 0 ? read.own_rate_hz : rate_hz;
+    one.block_s = static_cast<double>(read.trace.block) / (own_hz > 0 ? own_hz : 1);
     one.low = read.trace.low;
     one.high = read.trace.high;
     for (const TraceMark& mark : read.marks)

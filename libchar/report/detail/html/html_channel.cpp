@@ -242,7 +242,7 @@ std::string channel_section(const ChannelView& view,
                             std::size_t index,
                             const ChannelLayout& layout) {
   const ChannelResult& c = *view.result;
-  const double rate_hz = log.time.rate_hz;
+  const double rate_hz = log.rate_hz_of(c.channel);
   std::string out = fmt::format(
       "<details class=\"channel\" id=\"channel-{}\"{}><summary>{} <b>{}</b>{}</summary>\n",
       index,

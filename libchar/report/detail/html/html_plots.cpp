@@ -110,15 +110,15 @@ std::string trace_plot(const ChannelView& view, std::size_t index, const LogInfo
   const ChannelResult& c = *view.result;
   if (c.trace.low.size() < 2) return "";
   const std::string what =
-      c.trace.block == 1
-          ? "Every sample."
-          : fmt::format(
-                "Least and largest value of every {} samples{}.",
-                count_text(c.trace.block),
-                log.time.rate_hz > 0
-                    ? " (" + duration_text(static_cast<double>(c.trace.block) / log.time.rate_hz) +
-                          ")"
-                    : "");
+      c.trace.block == 1 ? "Every sample."
+                         : fmt::format("Least and largest value of every {} samples{}.",
+                                       count_text(c.trace.block),
+                                       log.rate_hz_of(c.channel) > 0
+                                           ? " (" +
+                                                 duration_text(static_cast<double>(c.trace.block) /
+                                                               log.rate_hz_of(c.channel)) +
+                                                 ")"
+                                           : "");
   const std::string marked =
       view.marks.empty() ? "" : " Marked: what was found in it and is no noise.";
   return plot_figure(
