@@ -157,21 +157,6 @@ libchar::Problem with_curve_hint(const Session& session, libchar::Problem proble
   return problem;
 }
 
-/// A hint that names a flag of other verbs is of no use here.
-libchar::Problem with_own_hint(const Session& session, libchar::Problem problem) {
-  const std::string& hint = problem.hint;
-  if (session.flags.empty() || hint.find("sensorchar ") != std::string::npos) return problem;
-  for (std::size_t at = hint.find("--"); at != std::string::npos; at = hint.find("--", at + 2)) {
-    const std::size_t end = hint.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
-    const std::string flag = hint.substr(at, end == std::string::npos ? end : end - at);
-    if (flag.size() > 2 && session.flags.count(flag) == 0) {
-      problem.hint.clear();
-      return problem;
-    }
-  }
-  return problem;
-}
-
 int said_exit_code(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
     work_is_done();
@@ -199,9 +184,9 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
   } catch (const Error& error) {
     // An error after a signal is its consequence: the input of a pipe ended early.
     if (stop_signal() != 0) return stopped(stop_signal());
-    const libchar::Problem problem = with_flags(with_curve_hint(session, error.problem()));
-    const std::string line =
-        libchar::one_line(with_own_hint(session, problem), colours(STDERR_FILENO));
+    const libchar::Problem problem =
+        with_flags(with_curve_hint(session, error.problem()), session.flags);
+    const std::string line = libchar::one_line(problem, colours(STDERR_FILENO));
     return fail(::isatty(STDERR_FILENO) == 1 ? line + marked_line(error.problem()) : line,
                 exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {

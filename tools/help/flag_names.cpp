@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace sensorchar {
 namespace {
@@ -93,9 +94,8 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"x_range", "--x-range"},
                                {"y_range", "--y-range"}};
 
-}  // namespace
-
-std::string with_flags(const std::string& message) {
+/// `used` gets the flags.
+std::string replaced(const std::string& message, std::vector<std::string_view>& used) {
   std::string text;
   std::size_t done = 0;
   for (std::size_t open = message.find('`'); open != std::string::npos;) {
@@ -110,16 +110,29 @@ std::string with_flags(const std::string& message) {
     }
     text += message.substr(done, open - done);
     text += row->flag;
+    used.push_back(row->flag);
     done = close + 1;
     open = message.find('`', done);
   }
   return text + message.substr(done);
 }
 
-libchar::Problem with_flags(libchar::Problem problem) {
+}  // namespace
+
+std::string with_flags(const std::string& message) {
+  std::vector<std::string_view> used;
+  return replaced(message, used);
+}
+
+libchar::Problem with_flags(libchar::Problem problem, const std::set<std::string>& of_verb) {
   problem.where = with_flags(problem.where);
   problem.what = with_flags(problem.what);
-  problem.hint = with_flags(problem.hint);
+  std::vector<std::string_view> used;
+  problem.hint = replaced(problem.hint, used);
+  for (const std::string_view flag : used)
+    if (!of_verb.empty() && flag.starts_with("--") &&
+        !of_verb.contains(std::string(flag.substr(0, flag.find(' ')))))
+      problem.hint.clear();
   return problem;
 }
 

@@ -2,6 +2,7 @@
 // The library's messages speak of its options by name in backquotes (`rate_hz`); whoever types
 // commands knows them as flags (--rate).
 
+#include <set>
 #include <string>
 
 #include "libchar/core/error.hpp"
@@ -12,7 +13,8 @@ namespace sensorchar {
 /// stays.
 std::string with_flags(const std::string& message);
 
-/// The same for everything a problem says itself; what it quotes from the input stays.
-libchar::Problem with_flags(libchar::Problem problem);
+/// The same for everything a problem says itself; what it quotes from the input stays. A hint that names an
+/// option whose flag is not among those of the verb (none: not known) is of no use here, and goes.
+libchar::Problem with_flags(libchar::Problem problem, const std::set<std::string>& of_verb);
 
 }  // namespace sensorchar
