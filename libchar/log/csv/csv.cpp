@@ -135,10 +135,10 @@ class CsvSource final : public RowSource {
     fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
     info_.rows = expected_rows(head);
-    chunks_.start_at(dialect_.data_offset);
+    chunks_.start(dialect_);
     next_line_ = dialect_.first_data_line;
     info_.bytes = chunks_.size();
-    if (chunks_.packed()) info_.dialect.emplace_back("compressed");
+    if (chunks_.packed()) info_.dialect.emplace_back(chunks_.packing());
     info_.first_line = next_line_;
     const int threads =
         std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);

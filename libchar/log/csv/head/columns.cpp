@@ -22,23 +22,15 @@ bool letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-// Words begin with a letter, or hold several; "+-1" and "1d5" are numbers gone wrong.
-bool like_words(std::string_view text) {
-  const auto outside = static_cast<unsigned char>(text[0]);
-  const bool typeset = text.starts_with("\xE2\x88\x92") || text.starts_with("\xE2\x80\x8B");
-  if (letter(text[0]) || text[0] == '/' || text[0] == '<' || (outside >= 0x80 && !typeset))
-    return true;
-  return std::count_if(text.begin(), text.end(), letter) > 1 ||
-         text.find(':') != std::string_view::npos;
-}
-
 struct Census {
-  std::size_t numbers = 0, dates = 0, clocks = 0, stamps = 0, words = 0, odd = 0;
+  std::size_t numbers = 0, dates = 0, clocks = 0, stamps = 0, words = 0, odd = 0, blanks = 0;
 
-  void add(std::string_view text, NumberStyle style) {
+  void add(const Field& field, NumberStyle style) {
+    const std::string_view text = field.text;
     const Cell cell = read_sampled(text, style);
-    if (cell.kind == Cell::missing) return;
-    if (cell.kind != Cell::bad) {
+    if (cell.kind == Cell::missing) {
+      ++blanks;
+    } else if (cell.kind != Cell::bad) {
       ++numbers;
     } else if (const auto stamp = read_calendar(text, DateOrder::day_first),
                other = read_calendar(text, DateOrder::month_first);
@@ -46,7 +38,7 @@ struct Census {
       const CalendarStamp& s = stamp ? *stamp : *other;
       ++(s.date && s.clock ? stamps : s.date ? dates : clocks);
     } else {
-      ++(number_and_unit(text) || !like_words(text) ? odd : words);
+      ++(!field.quoted && (number_and_unit(text) || !like_words(text)) ? odd : words);
     }
   }
 
@@ -56,12 +48,21 @@ struct Census {
     if (stamps == most) return ColumnKind::calendar;
     if (dates == most) return ColumnKind::date;
     if (clocks == most) return ColumnKind::clock;
-    return words > 1 && numbers + dates + clocks + stamps + odd == 0 ? ColumnKind::text
-                                                                     : ColumnKind::number;
+    return words + blanks > 1 && numbers + dates + clocks + stamps + odd == 0 ? ColumnKind::text
+                                                                              : ColumnKind::number;
   }
 };
 
 }  // namespace
+
+bool like_words(std::string_view text) {
+  const auto outside = static_cast<unsigned char>(text[0]);
+  const bool typeset = text.starts_with("\xE2\x88\x92") || text.starts_with("\xE2\x80\x8B");
+  if (letter(text[0]) || text[0] == '/' || text[0] == '<' || (outside >= 0x80 && !typeset))
+    return true;
+  return std::count_if(text.begin(), text.end(), letter) > 1 ||
+         text.find(':') != std::string_view::npos;
+}
 
 std::string without_thousands(std::string_view text, NumberStyle style) {
   if (style.thousands == 0) return std::string(text);
@@ -132,8 +133,7 @@ std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,
                                      NumberStyle style) {
   std::vector<Census> census(columns);
   for (const Cells& row : rows)
-    for (std::size_t c = 0; c < std::min(columns, row.size()); ++c)
-      census[c].add(row[c].text, style);
+    for (std::size_t c = 0; c < std::min(columns, row.size()); ++c) census[c].add(row[c], style);
   std::vector<ColumnKind> kinds;
   kinds.reserve(census.size());
   for (const Census& one : census) kinds.push_back(one.kind());

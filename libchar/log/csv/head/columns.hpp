@@ -40,13 +40,16 @@ Cell read_sampled(std::string_view text, NumberStyle style);
 /// Length of a label and its sign in front of a number, "ax=" or "ax:"; 0 when there is none.
 std::size_t label_length(std::string_view text);
 
+/// Words begin with a letter, or hold several; "+-1" and "1d5" are numbers gone wrong.
+bool like_words(std::string_view text);
+
 enum class ColumnKind {
   empty,     ///< no cell with anything in it
   number,    ///< numbers, and what cannot be read among them
   calendar,  ///< dates with clock times
   date,
   clock,
-  text,  ///< words in every cell, two or more
+  text,  ///< words in every cell that is not empty, of two cells or more
 };
 
 /// Of the rows that have `columns` cells.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -11,7 +12,7 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/utf8.hpp"
-#include "libchar/log/csv/head/delimiter.hpp"
+#include "libchar/log/csv/head/candidates.hpp"
 #include "libchar/log/csv/head/first_lines.hpp"
 #include "libchar/log/csv/head/header.hpp"
 #include "libchar/log/csv/head/sample.hpp"
@@ -101,7 +102,7 @@ struct Study {
       return !all_numeric(split(line.text, dialect.delimiter));
     });
     if (sample.size() < 2 || odd == sample.end()) return;
-    const Score looks = best_score(sample);
+    const Candidate looks = candidates(sample).front();
     if (looks.columns < 2) return;
     fail(*odd,
          0,
@@ -133,51 +134,55 @@ struct Study {
     if (sample.empty()) no_data();
   }
 
-  void choose_delimiter() {
-    const std::vector<Line> lines = bare(sample);
-    Score best;
-    if (options.delimiter != "auto" || separator_said_) {
-      best = score(lines, separator_said_ ? dialect.delimiter : named_delimiter(options.delimiter));
-      info.dialect.push_back("delimiter " + delimiter_name(best.delimiter) +
-                             (separator_said_ ? " (sep= in line 1)" : " (given)"));
-    } else {
-      best = best_score(lines);
-      if (best.quality < 0.8 && lines.size() > 4) {  // what stands in front is no table
-        const std::vector<Line> behind(
-            lines.begin() + static_cast<std::ptrdiff_t>(lines.size() / 2), lines.end());
-        if (const Score s = best_score(behind); s.quality > best.quality + 0.1) best = s;
-      }
-      if (best.columns > 1) {
-        info.dialect.push_back("delimiter " + delimiter_name(best.delimiter));
-        if (best.delimiter != ',')
-          info.guesses.push_back("delimiter: " + delimiter_name(best.delimiter) + ", " + sampled());
-      }
-    }
-    dialect.delimiter = best.delimiter;
-    columns_ = best.columns + (dialect.lead.empty() ? 0 : 1);
+  char given_decimal() const {
+    if (options.decimal == "auto") return 0;
+    if (options.decimal == "comma") return ',';
+    if (options.decimal == "point") return '.';
+    throw Error({ErrorKind::usage,
+                 "E0202",
+                 "`decimal`",
+                 "unknown decimal mark",
+                 options.decimal,
+                 "use auto, point or comma"});
   }
 
-  void choose_decimal() {
+  void choose_cells() {
     const std::vector<Line> lines = bare(sample);
-    char mark = 0;
-    if (options.decimal == "comma")
-      mark = ',';
-    else if (options.decimal == "point")
-      mark = '.';
-    else if (options.decimal != "auto")
-      throw Error({ErrorKind::usage,
-                   "E0202",
-                   "`decimal`",
-                   "unknown decimal mark",
-                   options.decimal,
-                   "use auto, point or comma"});
-    if (mark == 0) {
-      mark = decimal_mark(lines, dialect.delimiter);
-      if (mark == ',') info.guesses.push_back("decimal mark: comma, " + sampled());
-    }
-    dialect.decimal = mark;
-    if (dialect.decimal == ',') info.dialect.push_back("decimal comma");
+    const bool given = separator_said_ || options.delimiter != "auto";
+    const char delimiter = !given            ? '\0'
+                           : separator_said_ ? dialect.delimiter
+                                             : named_delimiter(options.delimiter);
+    const std::vector<Candidate> all = candidates(lines, delimiter, given_decimal());
+    const Candidate& best = all.front();
+    columns_ = best.columns + (dialect.lead.empty() ? 0 : 1);
+    dialect.decimal = best.decimal;
+    dialect.delimiter = best.delimiter;
+    if (best.columns < 2 && !given) dialect.delimiter = best.decimal == ',' ? ';' : ',';
     dialect.thousands = thousands_mark(lines, dialect.delimiter, dialect.decimal);
+    if (given)
+      info.dialect.push_back("delimiter " + delimiter_name(dialect.delimiter) +
+                             (separator_said_ ? " (sep= in line 1)" : " (given)"));
+    say_cells(all, given);
+  }
+
+  void say_cells(const std::vector<Candidate>& all, bool given) {
+    const Candidate& best = all.front();
+    const std::string name = delimiter_name(dialect.delimiter);
+    if (!given && best.columns > 1) info.dialect.push_back("delimiter " + name);
+    if (!given && best.columns > 1 && best.delimiter != ',')
+      info.guesses.push_back("delimiter: " + name + ", " + sampled());
+    if (options.decimal == "auto" && best.decimal == ',')
+      info.guesses.push_back("decimal mark: comma, " + sampled());
+    if (best.decimal == ',') info.dialect.push_back("decimal comma");
+    const auto other = std::find_if(
+        all.begin(), all.end(), [&](const Candidate& one) { return one.columns != best.columns; });
+    constexpr double kTie = 0.85;
+    if (other != all.end() && best.score > 0 && other->score >= kTie * best.score)
+      info.guesses.push_back(
+          fmt::format("{}; with a decimal {} it could be {} (`delimiter` and `decimal` decide)",
+                      plural(best.columns, "column"),
+                      other->decimal == ',' ? "comma" : "point",
+                      other->columns));
     if (dialect.thousands != 0)
       info.guesses.push_back(
           fmt::format("thousands are separated by {}, {}",
@@ -223,6 +228,7 @@ struct Study {
     for (const Line& line : sample) {
       out.push_back(cells(line.text));
       out.back().resize(cells_of(out.back()));
+      fit_names(out.back(), line.text);
     }
     return out;
   }
@@ -324,6 +330,7 @@ struct Study {
     dialect.first_data_line = first.number;
     if (options.header == "auto" && columns_ > 1 && !comments.empty() && header_in_comment())
       return;
+    if (cells_of(fields) < fields.size() && !filled_cells(columns_, 1).empty()) ++columns_;
     const std::size_t count = cells_of(fields);
     for (std::size_t i = 0; i < count; ++i)
       dialect.columns.emplace_back().position = fields[i].offset + 1;
@@ -362,9 +369,14 @@ struct Study {
   bool header_in_comment() {
     const Line& line = comments.back();
     std::string_view text = line.text;
-    const std::size_t sign = text.find_first_not_of(" \t#%/");
+    constexpr std::string_view kHeaders = "headers,";  // of Gulf Coast Data Concepts
+    std::size_t sign = text.find_first_not_of(" \t#%/;");
     if (sign == std::string_view::npos) return false;
     text.remove_prefix(sign);
+    if (ascii_lower(text.substr(0, kHeaders.size())) == kHeaders) {
+      sign += kHeaders.size();
+      text.remove_prefix(kHeaders.size());
+    }
     auto fields = cells(text);
     if (cells_of(fields) != columns_ || all_numeric(fields)) return false;
     const std::size_t data = dialect.data_offset;
@@ -418,7 +430,7 @@ struct Study {
       warn_trailing(sample[1], cells(sample[1].text).back().offset);
       dialect.trailing_delimiter = true;
     }
-    fit_names(fields);
+    fit_names(fields, text);
     if (fields.size() > kMaxColumns)
       fail(
           line, 0, "E0305", fmt::format("{} columns, the limit is {}", fields.size(), kMaxColumns));
@@ -478,14 +490,28 @@ struct Study {
          "`encoding` latin1 takes every byte for the character of ISO 8859-1");
   }
 
-  // LabVIEW names a column of comments that its rows do not have; R names no column of row numbers, which they do.
-  void fit_names(Cells& fields) const {
-    if (options.header != "auto") return;
+  // LabVIEW names a column of comments that its rows do not have; R names no column of row numbers, which they do; names with commas in
+  // them are known by the blanks behind those.
+  void fit_names(Cells& fields, std::string_view text) const {
+    if (options.header != "auto" || fields.size() == columns_) return;
     if (fields.size() == columns_ + 1 && fields.back().text == "Comment") fields.pop_back();
     if (fields.size() + 1 == columns_ && sample.size() > 1 &&
         std::all_of(fields.begin(), fields.end(), [](const Field& f) { return f.quoted; }) &&
         cells(sample[1].text)[0].quoted)
       fields.insert(fields.begin(), Field{"", 0, true});
+    const auto joined = [&](const Field& field) {
+      return field.offset > 0 && text[field.offset - 1] == ' ';
+    };
+    if (dialect.delimiter != ',' || fields.size() < columns_ ||
+        columns_ + std::count_if(fields.begin(), fields.end(), joined) != fields.size())
+      return;
+    Cells out;
+    for (const Field& field : fields)
+      if (joined(field))
+        out.back().text += ", " + field.text;
+      else
+        out.push_back(field);
+    fields = std::move(out);
   }
 
   // Words, dates that are not the time, counts of the rows and columns with nothing in them are no channels.
@@ -587,20 +613,35 @@ struct Study {
     }
   }
 
-  std::vector<std::string> cells_of(std::size_t column) const {
-    std::vector<std::string> out;
-    for (std::size_t offset = dialect.data_offset; offset < head.size();) {
+  // The cells of a column with something in them, as far as the head goes: rows of one cell.
+  std::vector<Cells> filled_cells(std::size_t column, std::size_t most) const {
+    std::vector<Cells> out;
+    for (std::size_t offset = dialect.data_offset; offset < head.size() && out.size() < most;) {
       const Line line = line_at(head, offset, 0);
       offset = line.after;
-      const Cells row = cells(line.text);
-      if (column < row.size() && (offset < head.size() || whole)) out.push_back(row[column].text);
+      if (offset == head.size() && !whole) break;  // may be cut
+      if (is_comment(line.text, dialect.lines.semicolon_comments)) continue;
+      const auto cell = cell_at(line.text, column, dialect.delimiter);
+      if (cell && read_cell(cell->text, '.').kind != Cell::missing) out.push_back({*cell});
     }
     return out;
   }
 
+  // Columns that are empty in the first rows may have words, or numbers, further on.
+  void find_kinds() {
+    constexpr std::size_t kEnough = 8;
+    kinds_ = column_kinds(rows_, dialect.columns.size(), style());
+    for (std::size_t c = 0; c < kinds_.size() && rows_.size() >= kSample / 2; ++c)
+      if (kinds_[c] == ColumnKind::empty && dialect.lead.empty()) {
+        std::vector<Cells> later = filled_cells(c, kEnough);
+        if (!later.empty()) later.push_back({Field{}});
+        kinds_[c] = column_kinds(later, 1, style())[0];
+      }
+  }
+
   void choose_time() {
     gather_rows();
-    kinds_ = column_kinds(rows_, dialect.columns.size(), style());
+    find_kinds();
     if (rows_.empty() && !options.where.empty())
       throw Error({ErrorKind::usage,
                    "E0328",
@@ -619,7 +660,9 @@ struct Study {
            "`delimiter` says what separates the cells, `skip_rows` where the table begins");
     refuse_curve();
     const auto rate = stated_rate();
-    const auto whole_head = [this](std::size_t column) { return cells_of(column); };
+    const auto whole_head = [this](std::size_t column) {
+      return filled_cells(column, std::numeric_limits<std::size_t>::max());
+    };
     choose_stamps(
         {rows_, kinds_, style(), rate, stated_tick(), whole_head}, options, dialect, info);
     choose_groups(rows_, options, dialect, info);
@@ -669,20 +712,21 @@ struct Study {
       info.dialect.emplace_back("UTF-8 byte-order mark");
     }
     for (std::uint64_t i = 0; i < options.skip_rows && offset < head.size(); ++i) {
-      const Line line = line_at(head, offset, number++);
+      const Line line = line_at(head, offset, number);
+      number += line.lines;
       offset = line.after;
     }
     if (options.skip_rows > 0)
       info.dialect.push_back(fmt::format("{} lines skipped", options.skip_rows));
     Sample found = sample_lines(head, whole, offset, number, info.file);
+    dialect.lines.semicolon_comments = found.semicolon_comments;
     sample = std::move(found.lines);
     comments = std::move(found.comments);
     if (sample.empty()) no_data();
     dialect.line_end = (comments.empty() ? sample[0] : comments[0]).end;
     take_separator_line();
     find_lead();
-    choose_delimiter();
-    choose_decimal();
+    choose_cells();
     refuse_wrong_delimiter();
     choose_header();
     if (dialect.columns.size() > kMaxColumns)
@@ -690,6 +734,7 @@ struct Study {
            0,
            "E0305",
            fmt::format("{} columns, the limit is {}", dialect.columns.size(), kMaxColumns));
+    dialect.lines.quotes = head.find('"', dialect.data_offset) != std::string_view::npos;
     find_cell_units();
     name_columns(dialect, info);
     choose_time();

@@ -264,15 +264,6 @@ bool campbell(const std::vector<Cells>& lines) {
   return lines.size() > 4 && (lines[0][0].text == "TOA5" || lines[0][0].text == "TOACI1");
 }
 
-// A line of words with one cell too many or too few, directly in front of the rows.
-bool names_off_by_one(const Cells& line, std::size_t columns) {
-  if (line.size() + 1 != columns && line.size() != columns + 1) return false;
-  return line.size() > 1 && std::all_of(line.begin(), line.end(), [](const Field& field) {
-           return read_cell(field.text, '.').kind == Cell::bad &&
-                  read_cell(field.text, ',').kind == Cell::bad;
-         });
-}
-
 }  // namespace
 
 TableStart find_table_start(const std::vector<Cells>& lines,
@@ -294,13 +285,12 @@ TableStart find_table_start(const std::vector<Cells>& lines,
   const auto rows_at = static_cast<std::size_t>(first_row - census.begin());
   if (first_row == census.end() || rows_at == 0) return out;
   out.data = rows_at;
-  if (!census[rows_at - 1].fits && names_off_by_one(lines[rows_at - 1], kinds.size())) {
-    out.names = rows_at - 1;
-    return out;
-  }
-  std::size_t last = rows_at;  // the last line in front that is words only
-  while (last > 0 && !census[last - 1].words()) --last;
-  if (last > 0) {
+  // Back over rows that are damaged to the last line of words alone.
+  std::size_t last = rows_at;
+  while (last > 0 && !census[last - 1].words() &&
+         (census[last - 1].fits || census[last - 1].good > 0))
+    --last;
+  if (last > 0 && census[last - 1].words()) {
     out.data = last;
     out.names = last - 1;
     const bool named_above = last > 1 && census[last - 2].fits && census[last - 2].bad > 0;
@@ -310,19 +300,20 @@ TableStart find_table_start(const std::vector<Cells>& lines,
     }
     return out;
   }
-  // No line of words: names with numbers among them (c, 1, 2), a row that is damaged, or lines that do not fit.
-  const auto fitting =
-      std::find_if(census.begin(), first_row, [](const LineCensus& line) { return line.fits; });
+  // No line of words: names with numbers among them (c, 1, 2), or a row that is damaged.
+  const auto fitting = std::find_if(census.begin() + static_cast<std::ptrdiff_t>(last),
+                                    first_row,
+                                    [](const LineCensus& line) { return line.fits; });
   if (fitting != first_row) {
     const auto at = static_cast<std::size_t>(fitting - census.begin());
     out.names = at;
     out.data = at + 1;
     return out;
   }
-  // Names, one too many or too few, directly in front of the rows.
-  const std::size_t cells = lines[rows_at - 1].size();
+  // Too many names or too few, which the first row tells.
+  const std::size_t cells = lines[0].size();
   const std::size_t off = cells > kinds.size() ? cells - kinds.size() : kinds.size() - cells;
-  if (cells > 1 && 2 * off <= kinds.size() + 1) out.names = rows_at - 1;
+  if (rows_at == 1 && cells > 1 && 2 * off <= kinds.size() + 1) out.names = 0;
   return out;
 }
 

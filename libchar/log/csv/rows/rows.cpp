@@ -231,8 +231,8 @@ class QuickRows {
     while (p < end_ && *p != to_.dialect.delimiter && *p != '\n' && *p != '\r' && *p != '"') ++p;
     if (p == end_ || *p == '"' || p - start > static_cast<std::ptrdiff_t>(kMaxField))
       return nullptr;
-    if (column == 0 &&
-        (p == start || *start == '#' || *start == '%' || *start == '/' || blank(*start)))
+    if (column == 0 && (p == start || *start == '#' || *start == '%' || *start == '/' ||
+                        *start == ';' || blank(*start)))
       return nullptr;
     std::size_t offset = 0;
     if (to != Plan::kSkip &&
@@ -258,6 +258,9 @@ class CarefulLines {
   const char* take(const char* start) {
     const char* stop = start;
     while (stop < end_ && *stop != '\n' && *stop != '\r') ++stop;
+    std::uint64_t more_lines = 0;
+    if (to_.dialect.lines.quotes && std::count(start, stop, '"') % 2 != 0)
+      stop = end_of_row(start, stop, more_lines);
     const char* after = stop;
     LineEnd kind = LineEnd::none;
     if (stop < end_) {
@@ -287,7 +290,7 @@ class CarefulLines {
       to_.out.blank.add(to_.line, 1);
       to_.out.account.blank_bytes += bytes;
       to_.list_lines();
-    } else if (is_comment(line)) {
+    } else if (is_comment(line, to_.dialect.lines.semicolon_comments)) {
       to_.out.comment.add(to_.line, 1);
       to_.out.account.comment_bytes += bytes;
       to_.list_lines();
@@ -313,10 +316,21 @@ class CarefulLines {
       if (kind == LineEnd::none && line.back() != '"' && line.back() != to_.dialect.delimiter)
         to_.out.unended = Spot{to_.line, line.size() + 1};
     }
+    to_.line += more_lines;
     return after;
   }
 
  private:
+  // Behind quoted cells that hold line ends.
+  const char* end_of_row(const char* start, const char* stop, std::uint64_t& more_lines) {
+    const std::string_view rest(start, static_cast<std::size_t>(end_ - start));
+    const char* const end = start + row_end(rest, 0, to_.dialect.delimiter);
+    more_lines = static_cast<std::uint64_t>(
+        std::count(stop, end, to_.dialect.line_end == LineEnd::cr ? '\r' : '\n'));
+    if (more_lines > 0) to_.list_lines();
+    return end;
+  }
+
   void fail(
       std::string code, std::string what, std::string got, std::string hint, std::size_t column) {
     to_.out.problem = RowProblem{
@@ -360,7 +374,8 @@ class CarefulLines {
     while (pad(i)) ++i;
     span.start = i;
     if (i < line.size() && line[i] == '"') {
-      const std::size_t close = line.find('"', i + 1);
+      std::size_t close = line.find('"', i + 1);
+      while (close < line.size() - 1 && line[close + 1] == '"') close = line.find('"', close + 2);
       if (close == std::string_view::npos) {
         fail("E0306",
              "a quote is opened here and not closed in this line",
