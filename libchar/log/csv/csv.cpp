@@ -173,6 +173,8 @@ class CsvSource final : public RowSource {
     if (pipeline_) pipeline_->stop();
     if (reached_end_) check_account();
     warnings.merge(std::exchange(pending_, {}));
+    refuse_many_bad_rows();
+    add(warnings, "bad_row", "rows that cannot be read: left out", bad_);
     add(warnings, "blank_line", "blank lines skipped", blank_);
     add(warnings, "comment_line", "comment lines between the rows skipped", comment_);
     add(warnings, "repeated_header", "repeated header lines skipped", repeated_);
@@ -258,6 +260,21 @@ class CsvSource final : public RowSource {
                                       static_cast<double>(lines));
   }
 
+  // Of a table that is damaged all over nothing should be trusted.
+  void refuse_many_bad_rows() const {
+    constexpr std::uint64_t kFew = 10;
+    if (bad_.count <= kFew || bad_.count * 10 <= rows_ + bad_.count) return;
+    throw Error(
+        {ErrorKind::input,
+         "E0335",
+         fmt::format("{}:{}", info_.file, bad_.spots[0].line),
+         fmt::format(
+             "{} of {} rows cannot be read, more than one in ten", bad_.count, rows_ + bad_.count),
+         "",
+         "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say "
+         "how the cells are written"});
+  }
+
   // Every byte of the file and every cell of its rows went somewhere; anything else is a defect of
   // this reader.
   void check_account() const {
@@ -289,6 +306,7 @@ class CsvSource final : public RowSource {
     chunk.rows.first_line = next_line_;
     chunk_line_ = next_line_;
     if (dialect_.clock_period_ns > 0) pass_midnight(chunk.rows);
+    collect(bad_, chunk.bad);
     collect(blank_, chunk.blank);
     collect(comment_, chunk.comment);
     collect(repeated_, chunk.repeated);
@@ -365,7 +383,7 @@ class CsvSource final : public RowSource {
   RawChunk raw_;
   ParsedChunk current_;
   std::optional<Problem> problem_;
-  Tally blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, too_small_, missing_;
+  Tally bad_, blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, too_small_, missing_;
   std::int64_t days_ns_ = 0, last_clock_ns_ = 0;
   std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::uint32_t> fractional_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "libchar/core/text/decimal.hpp"
@@ -286,6 +287,17 @@ struct Study {
         dialect.columns[c].unit_below = decoded(std::string(unit)).value_or("");
     }
     info.dialect.push_back(fmt::format("units in line {}", line.number));
+  }
+
+  // Gyroflow's .gcsv holds counts: gx, gy, gz and ax, ay, az.
+  void find_count_units() {
+    for (const Line& line : preamble_)
+      for (const auto& [key, axes, unit] :
+           {std::tuple("gscale", 'g', "rad/s"), std::tuple("ascale", 'a', "g")})
+        if (const auto count = stated_count(line.text, key))
+          for (Column& column : dialect.columns)
+            if (column.text.size() == 2 && column.text[0] == axes)
+              column.unit_below = fmt::format("{} {}", shortest(*count), unit);
   }
 
   // "0.005 sec" and "21.3 °C": the unit behind the first number of a column is that of the column.
@@ -588,7 +600,7 @@ struct Study {
 
   std::optional<double> stated_tick() const {
     for (const Line& line : preamble_)
-      if (const auto stated = stated_tick_s(line.text)) return stated;
+      if (const auto stated = stated_count(line.text, "tscale")) return stated;
     return std::nullopt;
   }
 
@@ -736,6 +748,7 @@ struct Study {
            fmt::format("{} columns, the limit is {}", dialect.columns.size(), kMaxColumns));
     dialect.lines.quotes = head.find('"', dialect.data_offset) != std::string_view::npos;
     find_cell_units();
+    find_count_units();
     name_columns(dialect, info);
     choose_time();
   }

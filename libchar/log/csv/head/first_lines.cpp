@@ -122,6 +122,11 @@ double interval_of(const Statement& said) {
 
 std::optional<double> stated_rate_hz(std::string_view line) {
   const std::string lower = ascii_lower(line);
+  const std::size_t sps =
+      lower.find(" sps,");  // "12000 samples, 20 sps, 2018-01-01T00:00:00, SLIST"
+  const std::size_t before = sps == std::string::npos ? sps : lower.rfind(',', sps);
+  if (before != std::string::npos)
+    return parse_double(trimmed(std::string_view(lower).substr(before + 1, sps - before - 1)));
   const Statement said = statement_in(lower);
   if (!said.number || said.key.empty()) return std::nullopt;
   double rate = hertz_of(said);
@@ -131,10 +136,10 @@ std::optional<double> stated_rate_hz(std::string_view line) {
   return rate;
 }
 
-std::optional<double> stated_tick_s(std::string_view line) {
+std::optional<double> stated_count(std::string_view line, std::string_view key) {
   const std::string lower = ascii_lower(line);
   const Statement said = statement_in(lower);
-  return said.key == "tscale" && said.number && *said.number > 0 ? said.number : std::nullopt;
+  return said.key == key && said.number && *said.number > 0 ? said.number : std::nullopt;
 }
 
 namespace {

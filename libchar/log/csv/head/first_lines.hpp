@@ -17,8 +17,8 @@ namespace libchar::csv {
 /// rate in Hz that a line states; nothing when it states none that can be.
 std::optional<double> stated_rate_hz(std::string_view line);
 
-/// Seconds in one count of the stamps: "tscale,0.001" of Gyroflow's .gcsv.
-std::optional<double> stated_tick_s(std::string_view line);
+/// What one count is: "tscale,0.001" (s), "gscale,0.00122" (rad/s) and "ascale,0.00049" (g) of Gyroflow's .gcsv.
+std::optional<double> stated_count(std::string_view line, std::string_view key);
 
 // What calls itself CSV and is something else.
 

@@ -308,7 +308,7 @@ class CarefulLines {
       to_.list_lines();
     } else if (!wanted(line)) {
       leave_out(bytes);
-    } else if (careful_row(line)) {
+    } else if (row_or_drop(line, bytes)) {
       to_.out.account.row_bytes += bytes;
       to_.note_line();
       ++to_.rows;
@@ -425,6 +425,48 @@ class CarefulLines {
     ++to_.out.filtered;
     to_.out.account.filtered_bytes += bytes;
     to_.list_lines();
+  }
+
+  // A row that cannot be read is dropped where that is asked for; without stamps its instant stays, as one of missing samples.
+  bool row_or_drop(std::string_view line, std::uint64_t bytes) {
+    if (!to_.plan.drop_bad_rows) {
+      if (careful_row(line)) return true;
+      if (std::string& hint = to_.out.problem->problem.hint; hint.empty())
+        hint = "`drop_bad_rows` leaves out and counts rows that cannot be read";
+      return false;
+    }
+    RowNotes before = to_.out;
+    if (careful_row(line)) return true;
+    const std::uint64_t at = to_.out.problem->spot.column;
+    static_cast<RowNotes&>(to_.out) = std::move(before);
+    to_.out.problem.reset();
+    to_.out.groups.resize(std::min(to_.out.groups.size(), to_.rows));
+    to_.out.bad.add(to_.line, at);
+    const bool instant = to_.dialect.time.column < 0 && to_.out.groups.empty() && has_number(line);
+    if (instant)
+      miss_row();
+    else
+      to_.out.account.filtered_bytes += bytes;
+    if (!instant) to_.list_lines();
+    return instant;
+  }
+
+  bool has_number(std::string_view line) const {
+    const auto fields = split(line, to_.dialect.delimiter);
+    return std::any_of(fields.begin(), fields.end(), [&](const Field& field) {
+      return read_cell(field.text, to_.dialect.decimal).kind == Cell::value;
+    });
+  }
+
+  void miss_row() {
+    Account& account = to_.out.account;
+    for (std::size_t c = 0; c < to_.plan.channels; ++c) {
+      to_.columns[c][to_.rows] = kMissing;
+      ++to_.out.missing_per_channel[c];
+    }
+    account.cells += to_.plan.target.size();
+    account.missing += to_.plan.channels;
+    account.unread += to_.plan.target.size() - to_.plan.channels;
   }
 
   // Does the row have the values that are asked for? Notes its group.
@@ -637,7 +679,7 @@ class CarefulLines {
         fail("E0311",
              cell.reason,
              std::string(text),
-             bad_hint(text),
+             bad_hint(text, channel),
              span.from == span.to || cell.offset == 0 ? span.start : span.from + cell.offset);
         return false;
     }
@@ -647,16 +689,21 @@ class CarefulLines {
     return true;
   }
 
-  std::string bad_hint(std::string_view text) const {
+  std::string bad_hint(std::string_view text, std::size_t channel) const {
     if (to_.dialect.decimal == '.' && read_cell(text, ',').kind == Cell::value)
       return "`decimal` comma, if ',' is the decimal mark";
     if (to_.dialect.decimal == ',' && read_cell(text, '.').kind == Cell::value)
       return "`decimal` point, if '.' is the decimal mark";
     const bool word =
         !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
-    return word ? "`channels` reads only the columns named there; `skip_rows`, if the table starts "
-                  "later"
-                : "";
+    if (!word) return "";
+    const auto column =
+        std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
+    return fmt::format(
+        "`channels` '!{}' leaves the column out, `drop_bad_rows` the row; `skip_rows`, if the "
+        "table "
+        "starts later",
+        to_.dialect.columns[static_cast<std::size_t>(column - to_.plan.target.begin())].name);
   }
 
   Filling& to_;
