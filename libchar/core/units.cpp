@@ -87,8 +87,8 @@ std::optional<std::pair<std::string_view, std::string_view>> plain_sign(std::str
   return std::nullopt;
 }
 
-// Lower case, blanks, '*' and '·' dropped, raised digits lowered: "rad s^-1", "Rad·s⁻¹", "rad*s-1", "rad.s-1" and "rad/(s)" are the
-// same.
+// Lower case, blanks, '*' and '·' dropped, raised digits lowered: "rad s^-1", "Rad·s⁻¹", "rad*s-1",
+// "rad.s-1" and "rad/(s)" are the same.
 std::string normal(std::string_view text) {
   std::string out;
   const bool divided = text.find("/(") != std::string_view::npos;

@@ -160,8 +160,8 @@ std::optional<std::string> value_for(const std::vector<std::string>& words,
 using ScaleNotes =
     std::map<std::string, std::vector<std::string>>;  // what was done, to which channels
 
-// What makes values in the unit that a log states values in the one that is asked for; 1 where these are not of one quantity, or are
-// equal.
+// What makes values in the unit that a log states values in the one that is asked for; 1 where
+// these are not of one quantity.
 double conversion(const std::string& stated, const Channel& channel) {
   const auto from = find_unit(stated), to = find_unit(channel.unit);
   if (!from || !to || from->quantity != to->quantity || from->to_si == to->to_si) return 1;
@@ -179,8 +179,9 @@ double conversion(const std::string& stated, const Channel& channel) {
   return from->to_si / to->to_si;
 }
 
-// Names and units as they are asked for; counts become values, by `channel_scale`, else by a number in the unit, and values in another
-// unit of the log are converted. Returns the factors, and says in `notes` what was done.
+// Names and units as they are asked for; counts become values, by `channel_scale`, else by a number
+// in the unit, and values in another unit of the log are converted. Returns the factors, and says in
+// `notes` what was done.
 std::vector<double> dress_channels(std::vector<Channel>& channels,
                                    const ReadOptions& options,
                                    ScaleNotes* notes) {

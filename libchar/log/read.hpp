@@ -23,7 +23,7 @@ struct ReadOptions {
   };
 
   std::vector<std::string>
-      channels;  ///< names (or c0, c1…) to read, "!name" not to; empty = all. Unknown name: Error(usage) naming the nearest
+      channels;  ///< names or c0, c1… to read, "!name" not to; empty = all. Unknown: Error(usage), the nearest
   std::string
       topic;  ///< of a log with several streams, the one to read; "" = the one that `channels` name, or the only one
   /// whose stamps, where messages have several: "auto", "header" (the sensor's), "log" (when

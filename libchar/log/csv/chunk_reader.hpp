@@ -1,6 +1,6 @@
 #pragma once
-// The bytes of a CSV file, unpacked where it is compressed, cut into chunks of whole lines, and the SHA-256 of the file as it
-// is stored.
+// The bytes of a CSV file, unpacked where it is compressed, cut into chunks of whole lines, and the
+// SHA-256 of the file as it is stored.
 
 #include <atomic>
 #include <cstdint>

@@ -25,8 +25,8 @@ bool opens_cell(std::string_view text, std::size_t from, std::size_t quote, char
   return quote == from || separates(text[quote - 1], delimiter);
 }
 
-// The quote that closes the cell whose opening one this is, the end of the text where it has none; nothing where the cell does not end
-// behind it.
+// The quote that closes the cell whose opening one this is, the end of the text where it has none;
+// nothing where the cell does not end behind it.
 std::optional<std::size_t> closing_quote(std::string_view text, std::size_t quote, char delimiter) {
   std::size_t close = text.find('"', quote + 1);
   while (close < text.size() - 1 && text[close + 1] == '"') close = text.find('"', close + 2);

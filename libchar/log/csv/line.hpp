@@ -25,8 +25,9 @@ struct Line {
   LineEnd end = LineEnd::none;
 };
 
-/// Where the row that begins at `from` ends: the first line end outside quoted cells, else the end of the text. `open` is set where a
-/// quoted cell may close in what follows the text; one that does not within 128 KiB is no quoted cell. `delimiter` 0: not known.
+/// Where the row that begins at `from` ends: the first line end outside quoted cells, else the end
+/// of the text. `open` is set where a quoted cell may close in what follows the text; one that does
+/// not within 128 KiB is no quoted cell. `delimiter` 0: not known.
 std::size_t row_end(std::string_view text,
                     std::size_t from,
                     char delimiter = 0,
@@ -49,8 +50,9 @@ std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote
 /// Cell `column` of a line, without splitting the others where it can be; nothing when the line has fewer.
 std::optional<Field> cell_at(std::string_view line, std::size_t column, char delimiter);
 
-/// The stamp in front of a line of a terminal, "[2024-05-01 12:00:00.123] 1,2" or "12:00:00.123 -> 1,2", up to `lead`, "]" or
-/// "->"; nothing when the line has none. `after` is where the cells begin.
+/// The stamp in front of a line of a terminal, "[2024-05-01 12:00:00.123] 1,2" or "12:00:00.123 ->
+/// 1,2", up to `lead`, "]" or "->"; nothing when the line has none. `after` is where the cells
+/// begin.
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after);
 
 /// Does this line start with a comment sign (#, %, //, where `semicolons` ;)?

@@ -80,7 +80,8 @@ Steps steps_of(const std::vector<std::int64_t>& stamps) {
   return out;
 }
 
-// Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that stand, and rise by kind.
+// Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that
+// stand, and rise by kind.
 bool told_apart(const std::vector<Cells>& rows,
                 std::size_t column,
                 bool named,

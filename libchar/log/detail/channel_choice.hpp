@@ -20,8 +20,8 @@ struct TableColumns {
   bool positions_skip_time = false;  ///< c0, c1… count the columns that are not the time (else all)
 };
 
-/// The columns of options.channels, or all but the time, in file order; those of "!name" are left out. Throws Error(usage) for an
-/// unknown name, with the nearest known one, and Error(input) when nothing is left.
+/// The columns of options.channels, or all but the time, in file order, without those of "!name".
+/// Throws Error(usage) for an unknown name, with the nearest known one, and Error(input) when nothing is left.
 std::vector<std::size_t> choose_channels(const TableColumns& table,
                                          const ReadOptions& options,
                                          const std::string& file);

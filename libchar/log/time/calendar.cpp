@@ -234,7 +234,7 @@ bool take_zone(DateScanner& at, CalendarStamp& out) {
     const bool west = at.peek() == '-';
     at.rest.remove_prefix(1);
     const std::size_t n = at.digits_ahead();
-    if (n == 0 || n > 4 || n == 3) return false;
+    if (n == 0 || n > 4 || n == 3 || (n == 1 && !named)) return false;
     const int hours = at.fixed(n > 2 ? 2 : n);
     int minutes = 0;
     if (n == 4)

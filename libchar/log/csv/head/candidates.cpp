@@ -8,7 +8,6 @@
 #include "libchar/core/error.hpp"
 #include "libchar/log/csv/head/columns.hpp"
 #include "libchar/log/csv/rows/number.hpp"
-#include "libchar/log/time/calendar.hpp"
 
 namespace libchar::csv {
 
@@ -17,54 +16,34 @@ namespace {
 constexpr double kOneColumn = 0.9;  // a table of one column is the last thing to be thought of
 constexpr double kOddNames = 0.8;   // and so is one whose names are more or fewer than its columns
 constexpr double kTabsToo = 0.7;
+constexpr double kWord = 0.5;
 
-// "1.234,56" under a decimal comma, "1,234.56" under a point: one mark between groups of three, another once behind them.
-char mark_of_grouped(std::string_view text) {
-  for (const auto& [point, group] : {std::pair{'.', ','}, std::pair{',', '.'}})
-    if (const std::string plain = without_thousands(text, {point, group});
-        plain != text && text.find(point) != std::string_view::npos)
-      return point;
-  return 0;
+// What a cell is worth to a table under a decimal mark: one, where it is a number, a date or blank.
+// Any cell may be a word; "1,013" is a thousand under a point, and less likely so than a number
+// under a comma.
+double worth_of(const Field& field, char decimal) {
+  constexpr double kGrouped = 0.95;
+  const std::string& text = field.text;
+  if (decimal == ',' && text.ends_with(',')) return 0;
+  const CellKind kind = cell_kind(field, {decimal});
+  if (kind < CellKind::word) return 1;
+  if (without_thousands(text, {decimal, decimal == ',' ? '.' : ','}) != text)
+    return text.find(decimal) != std::string::npos ? 1 : kGrouped;
+  const bool whole = field.quoted || text.find_first_of(",;\t") == std::string::npos;
+  return kind == CellKind::word && whole ? kWord : 0;
 }
 
-// What a cell is worth to a table, under a decimal point and under a decimal comma.
 struct Worth {
   double point = 0, comma = 0;
-  Worth& operator+=(const Worth& other) {
-    point += other.point;
-    comma += other.comma;
-    return *this;
-  }
 };
-
-constexpr double kWord = 0.5;  // any cell may be a word
-constexpr double kGrouped =
-    0.95;  // "1,013" is a thousand under a point, and less likely so than a number under a comma
-
-Worth worth_of(const Field& field) {
-  const std::string& text = field.text;
-  const bool points = text.find('.') != std::string::npos,
-             commas = text.find(',') != std::string::npos;
-  if (const char mark = points && commas ? mark_of_grouped(text) : '\0'; mark != 0)
-    return mark == '.' ? Worth{1, 0} : Worth{0, 1};
-  const bool number = !commas && read_sampled(text, {'.'}).kind != Cell::bad;
-  if (number) return {1, points ? 0.0 : 1.0};
-  if (commas && !points && text.back() != ',' && read_sampled(text, {','}).kind != Cell::bad)
-    return {without_thousands(text, {'.', ','}) != text ? kGrouped : 0, 1};
-  if (read_calendar(text, DateOrder::day_first) || read_calendar(text, DateOrder::month_first))
-    return {1, 1};
-  const bool word =
-      field.quoted || (like_words(text) && text.find_first_of(",;\t") == std::string::npos);
-  return word ? Worth{kWord, kWord} : Worth{};
-}
 
 struct LineWorth {
   std::size_t cells = 0;
   bool ends_empty = false;  // the last cell
   Worth worth;
-  bool row(std::size_t columns) const {  // of nothing but numbers, dates and blanks
+  bool row(std::size_t columns) const {  // more than words
     return cells == columns &&
-           std::max(worth.point, worth.comma) > static_cast<double>(cells) - 0.1;
+           std::max(worth.point, worth.comma) > kWord * (static_cast<double>(cells) + 1) - 0.1;
   }
 };
 
@@ -74,7 +53,12 @@ LineWorth worth_of(const Line& line, char delimiter) {
   out.cells = fields.size();
   out.ends_empty =
       fields.size() > 1 && fields.back().text.empty() && !fields.back().quoted && delimiter != ' ';
-  for (const Field& field : fields) out.worth += worth_of(field);
+  for (const Field& field : fields) {
+    const bool mark = field.text.find_first_of(".,") != std::string::npos;
+    const double point = worth_of(field, '.');
+    out.worth.point += point;
+    out.worth.comma += mark ? worth_of(field, ',') : point;
+  }
   return out;
 }
 
@@ -84,7 +68,8 @@ void drop_empty_ends(std::vector<LineWorth>& lines) {
   for (const LineWorth& line : lines)
     if (!line.ends_empty) widest = std::max(widest, line.cells);
   for (LineWorth& line : lines)
-    if (line.ends_empty && line.cells != widest) --line.cells, line.worth += {-1, -1};
+    if (line.ends_empty && line.cells != widest)
+      --line.cells, --line.worth.point, --line.worth.comma;
 }
 
 std::size_t usual_width(const std::vector<LineWorth>& lines) {
@@ -102,7 +87,7 @@ bool names_fit(const std::vector<LineWorth>& lines, std::size_t columns) {
       lines.begin(), lines.end(), [&](const LineWorth& line) { return line.row(columns); });
   if (row == lines.end() || row == lines.begin()) return true;
   const LineWorth& names = *(row - 1);
-  return names.cells == columns && (columns > 1 || names.worth.point >= kWord);
+  return names.cells == columns && (columns > 1 || names.worth.point > 0);
 }
 
 // What stands in front of a table is no table: of many lines the second half says how it is written.
@@ -120,7 +105,8 @@ void add_candidates(const std::vector<Line>& lines,
   Worth worth;
   double cells = 0, fitting = 0;
   for (const LineWorth& line : body) {
-    worth += line.worth;
+    worth.point += line.worth.point;
+    worth.comma += line.worth.comma;
     cells += static_cast<double>(line.cells);
     fitting += line.cells == columns ? 1 : 0;
   }
@@ -155,7 +141,7 @@ std::vector<Candidate> candidates(const std::vector<Line>& lines, char delimiter
   for (Candidate& one : out)
     if (one.delimiter == ' ' && tabs) one.score *= kTabsToo;
   std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
-    return a.score > b.score;
+    return a.score != b.score ? a.score > b.score : a.columns > b.columns;
   });
   return out;
 }

@@ -1,6 +1,7 @@
 #include "libchar/log/csv/head/columns.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/core/units.hpp"
@@ -22,39 +23,7 @@ bool letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-struct Census {
-  std::size_t numbers = 0, dates = 0, clocks = 0, stamps = 0, words = 0, odd = 0, blanks = 0;
-
-  void add(const Field& field, NumberStyle style) {
-    const std::string_view text = field.text;
-    const Cell cell = read_sampled(text, style);
-    if (cell.kind == Cell::missing) {
-      ++blanks;
-    } else if (cell.kind != Cell::bad) {
-      ++numbers;
-    } else if (const auto stamp = read_calendar(text, DateOrder::day_first),
-               other = read_calendar(text, DateOrder::month_first);
-               stamp || other) {
-      const CalendarStamp& s = stamp ? *stamp : *other;
-      ++(s.date && s.clock ? stamps : s.date ? dates : clocks);
-    } else {
-      ++(!field.quoted && (number_and_unit(text) || !like_words(text)) ? odd : words);
-    }
-  }
-
-  ColumnKind kind() const {
-    const std::size_t most = std::max({numbers, dates, clocks, stamps, words, odd});
-    if (most == 0) return ColumnKind::empty;
-    if (stamps == most) return ColumnKind::calendar;
-    if (dates == most) return ColumnKind::date;
-    if (clocks == most) return ColumnKind::clock;
-    return words + blanks > 1 && numbers + dates + clocks + stamps + odd == 0 ? ColumnKind::text
-                                                                              : ColumnKind::number;
-  }
-};
-
-}  // namespace
-
+// Words begin with a letter, or hold several; "+-1" and "1d5" are numbers gone wrong.
 bool like_words(std::string_view text) {
   const auto outside = static_cast<unsigned char>(text[0]);
   const bool typeset = text.starts_with("\xE2\x88\x92") || text.starts_with("\xE2\x80\x8B");
@@ -63,6 +32,39 @@ bool like_words(std::string_view text) {
   return std::count_if(text.begin(), text.end(), letter) > 1 ||
          text.find(':') != std::string_view::npos;
 }
+
+ColumnKind kind_of(const std::map<CellKind, std::size_t>& counts) {
+  const auto count = [&](CellKind kind) {
+    const auto found = counts.find(kind);
+    return found == counts.end() ? 0 : found->second;
+  };
+  CellKind most = CellKind::blank;
+  for (const CellKind kind : {CellKind::stamp,
+                              CellKind::date,
+                              CellKind::clock,
+                              CellKind::number,
+                              CellKind::word,
+                              CellKind::odd})
+    if (count(kind) > (most == CellKind::blank ? 0 : count(most))) most = kind;
+  switch (most) {
+    case CellKind::blank:
+      return ColumnKind::empty;
+    case CellKind::stamp:
+      return ColumnKind::calendar;
+    case CellKind::date:
+      return ColumnKind::date;
+    case CellKind::clock:
+      return ColumnKind::clock;
+    default:
+      break;
+  }
+  std::size_t cells = 0;
+  for (const auto& [kind, n] : counts) cells += n;
+  const bool text = cells > 1 && count(CellKind::word) + count(CellKind::blank) == cells;
+  return text ? ColumnKind::text : ColumnKind::number;
+}
+
+}  // namespace
 
 std::string without_thousands(std::string_view text, NumberStyle style) {
   if (style.thousands == 0) return std::string(text);
@@ -128,15 +130,28 @@ Cell read_sampled(std::string_view text, NumberStyle style) {
   return measured ? read_styled(measured->number, style) : cell;
 }
 
+CellKind cell_kind(const Field& field, NumberStyle style) {
+  const std::string_view text = field.text;
+  const Cell cell = read_sampled(text, style);
+  if (cell.kind == Cell::missing) return CellKind::blank;
+  if (cell.kind != Cell::bad) return CellKind::number;
+  const auto day = read_calendar(text, DateOrder::day_first);
+  if (const auto stamp = day ? day : read_calendar(text, DateOrder::month_first))
+    return !stamp->clock ? CellKind::date : stamp->date ? CellKind::stamp : CellKind::clock;
+  const bool word = field.quoted || (like_words(text) && !number_and_unit(text));
+  return word ? CellKind::word : CellKind::odd;
+}
+
 std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,
                                      std::size_t columns,
                                      NumberStyle style) {
-  std::vector<Census> census(columns);
+  std::vector<std::map<CellKind, std::size_t>> counts(columns);
   for (const Cells& row : rows)
-    for (std::size_t c = 0; c < std::min(columns, row.size()); ++c) census[c].add(row[c], style);
+    for (std::size_t c = 0; c < std::min(columns, row.size()); ++c)
+      ++counts[c][cell_kind(row[c], style)];
   std::vector<ColumnKind> kinds;
-  kinds.reserve(census.size());
-  for (const Census& one : census) kinds.push_back(one.kind());
+  kinds.reserve(columns);
+  for (const auto& one : counts) kinds.push_back(kind_of(one));
   return kinds;
 }
 

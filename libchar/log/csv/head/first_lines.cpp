@@ -233,15 +233,13 @@ LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, Nu
   LineCensus out;
   out.fits = line.size() == kinds.size();
   for (std::size_t c = 0; c < std::min(line.size(), kinds.size()); ++c) {
-    const std::string& text = line[c].text;
     if (kinds[c] == ColumnKind::text || kinds[c] == ColumnKind::empty) continue;
-    const Cell cell = read_sampled(text, style);
-    if (cell.kind == Cell::missing) continue;
-    const bool number = cell.kind != Cell::bad;
-    const bool calendar = !number && (read_calendar(text, DateOrder::day_first) ||
-                                      read_calendar(text, DateOrder::month_first));
-    ++(kinds[c] == ColumnKind::number ? (number ? out.good : out.bad)
-                                      : (calendar ? out.good : out.bad));
+    const CellKind kind = cell_kind(line[c], style);
+    if (kind == CellKind::blank) continue;
+    const bool good = kinds[c] == ColumnKind::number
+                          ? kind == CellKind::number
+                          : kind > CellKind::number && kind < CellKind::word;
+    ++(good ? out.good : out.bad);
   }
   return out;
 }
@@ -275,6 +273,7 @@ TableStart find_table_start(const std::vector<Cells>& lines,
                             const std::vector<ColumnKind>& kinds,
                             NumberStyle style) {
   if (campbell(lines)) return {4, 1, 2};
+  if (lines[0][0].text.starts_with("TIMESERIES ")) return {1, {}, {}};  // SLIST of seismology
   TableStart out;
   std::vector<LineCensus> census;
   census.reserve(lines.size());

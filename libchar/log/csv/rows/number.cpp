@@ -128,7 +128,8 @@ Written read_mantissa(std::string_view text, std::size_t i, char point) {
       fraction = true;
     } else if (is_digit(text[i])) {
       out.any = true;
-      // 25 digits leave room for the largest unit, an hour; further digits stand far below a nanosecond or far above 64 bits.
+      // 25 digits leave room for the largest unit, an hour; further digits stand far below a
+      // nanosecond or far above 64 bits.
       if (out.w < static_cast<Uint128>(1000000000000) * 1000000000000) {
         out.w = out.w * 10 + static_cast<unsigned>(text[i] - '0');
         out.q -= fraction;

@@ -115,7 +115,8 @@ class QuickRows {
   QuickRows(Filling& to, std::string_view text)
       : to_(to), end_(text.data() + text.size()), try_vector_(text.data()) {}
 
-  // As many rows as are plain numbers, from p on; at the first that is anything else it stops, having changed nothing but scratch.
+  // As many rows as are plain numbers, from p on; at the first that is anything else it stops,
+  // having changed nothing but scratch.
   const char* take(const char* p) {
     if (p >= try_vector_) {
       p = vector_rows(p);
@@ -427,7 +428,8 @@ class CarefulLines {
     to_.list_lines();
   }
 
-  // A row that cannot be read is dropped where that is asked for; without stamps its instant stays, as one of missing samples.
+  // A row that cannot be read is dropped where that is asked for; without stamps its instant stays,
+  // as one of missing samples.
   bool row_or_drop(std::string_view line, std::uint64_t bytes) {
     if (!to_.plan.drop_bad_rows) {
       if (careful_row(line)) return true;
