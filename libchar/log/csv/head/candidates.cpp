@@ -13,8 +13,8 @@ namespace libchar::csv {
 
 namespace {
 
-constexpr double kOneColumn = 0.9;  // a table of one column is the last thing to be thought of
-constexpr double kOddNames = 0.8;   // and so is one whose names are more or fewer than its columns
+constexpr double kOneColumn = 0.75;  // a table of one column is the last thing to be thought of
+constexpr double kOddNames = 0.6;    // and so is one whose names are more or fewer than its columns
 constexpr double kTabsToo = 0.7;
 constexpr double kWord = 0.5;
 

@@ -114,7 +114,7 @@ void say_cells(Study& study, const std::vector<Candidate>& all, bool given) {
   if (study.options.decimal == "auto" && best.decimal == ',')
     info.guesses.push_back("decimal mark: comma, " + sampled);
   if (best.decimal == ',') info.dialect.emplace_back("decimal comma");
-  constexpr double kTie = 0.85;
+  constexpr double kTie = 0.7;
   for (const Candidate& other : all) {
     if (other.columns == best.columns || other.score <= 0 || other.score < kTie * best.score)
       continue;
