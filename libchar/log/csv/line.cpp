@@ -40,7 +40,8 @@ std::optional<std::size_t> closing_quote(std::string_view text, std::size_t quot
 
 std::size_t row_end(std::string_view text, std::size_t from, char delimiter, bool* open) {
   const auto line_end = [&](std::size_t at) {
-    return std::min(text.find_first_of("\r\n", at), text.size());
+    while (at < text.size() && text[at] != '\n' && text[at] != '\r') ++at;
+    return at;
   };
   const std::string_view near = text.substr(0, std::min(text.size(), from + kMaxField));
   std::size_t end = line_end(from);
@@ -128,17 +129,18 @@ std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote
 }
 
 std::optional<Field> cell_at(std::string_view line, std::size_t column, char delimiter) {
-  if (delimiter == ' ' || line.find('"') != std::string_view::npos) {
+  std::size_t from = 0;
+  for (std::size_t left = column; left > 0 && from != std::string_view::npos; --left) {
+    from = line.find(delimiter, from);
+    from += from == std::string_view::npos ? 0 : 1;
+  }
+  const std::size_t end = from == std::string_view::npos ? from : line.find(delimiter, from);
+  if (delimiter == ' ' || line.substr(0, end).find('"') != std::string_view::npos) {
     std::vector<Field> fields = split(line, delimiter);
     return column < fields.size() ? std::optional(std::move(fields[column])) : std::nullopt;
   }
-  std::size_t from = 0;
-  for (; column > 0; --column) {
-    from = line.find(delimiter, from);
-    if (from++ == std::string_view::npos) return std::nullopt;
-  }
-  return Field{
-      std::string(trimmed(line.substr(from, line.find(delimiter, from) - from))), from, false};
+  if (from == std::string_view::npos) return std::nullopt;
+  return Field{std::string(trimmed(line.substr(from, end - from))), from, false};
 }
 
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after) {

@@ -90,15 +90,18 @@ bool names_fit(const std::vector<LineWorth>& lines, std::size_t columns) {
   return names.cells == columns && (columns > 1 || names.worth.point > 0);
 }
 
-// What stands in front of a table is no table: of many lines the second half says how it is written.
+// What stands in front of a table is no table: of many lines the last ones say how it is written.
 void add_candidates(const std::vector<Line>& lines,
                     char delimiter,
                     char decimal,
                     std::vector<Candidate>& out) {
   std::vector<LineWorth> all;
-  for (const Line& line : lines)
-    if (line.end != LineEnd::none || all.size() < 2)  // a last line without its end may be cut
-      all.push_back(worth_of(line, delimiter));
+  constexpr std::size_t kLooked = 24;  // at either end
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i >= kLooked && i + kLooked < lines.size()) continue;
+    if (lines[i].end != LineEnd::none || all.size() < 2)  // a last line without its end may be cut
+      all.push_back(worth_of(lines[i], delimiter));
+  }
   drop_empty_ends(all);
   const std::vector<LineWorth> body(all.begin() + (all.size() > 4 ? all.size() / 2 : 0), all.end());
   const std::size_t columns = usual_width(body);
@@ -148,17 +151,18 @@ std::vector<Candidate> candidates(const std::vector<Line>& lines, char delimiter
 
 char thousands_mark(const std::vector<Line>& lines, char delimiter, char decimal) {
   constexpr std::size_t kEnough = 3;
-  for (const char group : {',', '.', '\'', ' '}) {
-    if (group == decimal || (group == ' ' && delimiter == ' ')) continue;
-    std::size_t found = 0;
-    for (const Line& line : lines)
-      for (const Field& field : split(line.text, delimiter)) {
-        if (read_cell(field.text, decimal).kind != Cell::bad) continue;
+  std::map<char, std::size_t> found;
+  for (const Line& line : lines)
+    for (const Field& field : split(line.text, delimiter)) {
+      if (field.text.find_first_of(decimal == ',' ? ".' " : ",' ") == std::string::npos) continue;
+      if (cell_kind(field, {decimal}) == CellKind::number) continue;
+      for (const char group : {',', '.', '\'', ' '}) {
+        if (group == decimal || (group == ' ' && delimiter == ' ')) continue;
         const std::string plain = without_thousands(field.text, {decimal, group});
-        found += plain != field.text && read_cell(plain, decimal).kind == Cell::value;
+        const bool grouped = plain != field.text && read_cell(plain, decimal).kind == Cell::value;
+        if (grouped && ++found[group] == kEnough) return group;
       }
-    if (found >= kEnough) return group;
-  }
+    }
   return 0;
 }
 

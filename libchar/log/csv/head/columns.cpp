@@ -1,7 +1,8 @@
 #include "libchar/log/csv/head/columns.hpp"
 
 #include <algorithm>
-#include <map>
+#include <array>
+#include <numeric>
 
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/core/units.hpp"
@@ -33,11 +34,10 @@ bool like_words(std::string_view text) {
          text.find(':') != std::string_view::npos;
 }
 
-ColumnKind kind_of(const std::map<CellKind, std::size_t>& counts) {
-  const auto count = [&](CellKind kind) {
-    const auto found = counts.find(kind);
-    return found == counts.end() ? 0 : found->second;
-  };
+using KindCounts = std::array<std::size_t, static_cast<std::size_t>(CellKind::odd) + 1>;
+
+ColumnKind kind_of(const KindCounts& counts) {
+  const auto count = [&](CellKind kind) { return counts[static_cast<std::size_t>(kind)]; };
   CellKind most = CellKind::blank;
   for (const CellKind kind : {CellKind::stamp,
                               CellKind::date,
@@ -58,8 +58,7 @@ ColumnKind kind_of(const std::map<CellKind, std::size_t>& counts) {
     default:
       break;
   }
-  std::size_t cells = 0;
-  for (const auto& [kind, n] : counts) cells += n;
+  const std::size_t cells = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   const bool text = cells > 1 && count(CellKind::word) + count(CellKind::blank) == cells;
   return text ? ColumnKind::text : ColumnKind::number;
 }
@@ -109,7 +108,9 @@ Cell read_styled(std::string_view text, NumberStyle style) {
 }
 
 std::optional<MeasuredCell> number_and_unit(std::string_view text) {
+  constexpr std::size_t kLongestUnit = 24;
   const std::size_t end = text.find_first_not_of(kOfNumbers);
+  if (end != std::string_view::npos && text.size() - end > kLongestUnit) return std::nullopt;
   if (end == 0 || end == std::string_view::npos || text.find_first_of("0123456789") >= end)
     return std::nullopt;
   const MeasuredCell cell{trimmed(text.substr(0, end)), text.substr(end)};
@@ -145,13 +146,13 @@ CellKind cell_kind(const Field& field, NumberStyle style) {
 std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,
                                      std::size_t columns,
                                      NumberStyle style) {
-  std::vector<std::map<CellKind, std::size_t>> counts(columns);
+  std::vector<KindCounts> counts(columns, KindCounts{});
   for (const Cells& row : rows)
     for (std::size_t c = 0; c < std::min(columns, row.size()); ++c)
-      ++counts[c][cell_kind(row[c], style)];
+      ++counts[c][static_cast<std::size_t>(cell_kind(row[c], style))];
   std::vector<ColumnKind> kinds;
   kinds.reserve(columns);
-  for (const auto& one : counts) kinds.push_back(kind_of(one));
+  for (const KindCounts& one : counts) kinds.push_back(kind_of(one));
   return kinds;
 }
 
