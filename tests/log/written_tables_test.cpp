@@ -174,6 +174,7 @@ TEST_CASE("comments may begin with a semicolon where it separates nothing") {
                   return fmt::format("{:.3f},{},2,{}\n; still there", 0.01 * (k + 1), k, k);
                 }));
   CHECK(channels_of(r) == "Ax[] Ay[] Az[] ");
+  CHECK_FALSE(said(r.info.guesses, "could be"));
   CHECK(r.info.time.rate_hz == Approx(100));
   CHECK(count(r, "comment_line") == 20);
   const Recording index = read_text(

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kOneColumn = 0.75;  // a table of one column is the last thing to be thought of
 constexpr double kOddNames = 0.6;    // and so is one whose names are more or fewer than its columns
-constexpr double kTabsToo = 0.7;
+constexpr double kTabsToo = 0.5;
 constexpr double kWord = 0.5;
 
 // What a cell is worth to a table under a decimal mark: one, where it is a number, a date or blank.
@@ -27,7 +27,8 @@ double worth_of(const Field& field, char decimal) {
   if (decimal == ',' && text.ends_with(',')) return 0;
   const CellKind kind = cell_kind(field, {decimal});
   if (kind < CellKind::word) return 1;
-  if (without_thousands(text, {decimal, decimal == ',' ? '.' : ','}) != text)
+  const std::string plain = without_thousands(text, {decimal, decimal == ',' ? '.' : ','});
+  if (plain != text && read_cell(plain, decimal).kind == Cell::value)
     return text.find(decimal) != std::string::npos ? 1 : kGrouped;
   const bool whole = field.quoted || text.find_first_of(",;\t") == std::string::npos;
   return kind == CellKind::word && whole ? kWord : 0;
