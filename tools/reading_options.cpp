@@ -71,7 +71,8 @@ void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
           "--unit",
           options.channel_unit,
           "unit of channels by name or pattern, such as 'gyro*=deg/s'; a number in it is "
-          "their scale (0.05 deg/s); repeat it or separate by commas (default: as in the log)")
+          "their scale (0.05 deg/s); values in another unit of the log are converted; repeat it "
+          "or separate by commas (default: as in the log)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME=UNIT")
@@ -170,10 +171,11 @@ void add_accepting_flag(VerbOptions& verb,
 }  // namespace
 
 void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options) {
-  verb.add_texts("-c,--channel",
-                 options.channels,
-                 "channel to read, by name, position c0, c1… or pattern ('gyro*'); repeat it or "
-                 "separate by commas (default: all)")
+  verb.add_texts(
+          "-c,--channel",
+          options.channels,
+          "channel to read, by name, position c0, c1… or pattern ('gyro*'), or with ! in front not "
+          "to read ('!temp'); repeat it or separate by commas (default: all)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME")
@@ -218,6 +220,12 @@ void add_reading_options_without_channel(VerbOptions& verb,
                      "nan",
                      options.missing.overflow,
                      "nan: a number out of range counts as missing (default: error)");
+  add_accepting_flag(verb,
+                     "--bad-rows",
+                     "drop",
+                     options.missing.bad_rows,
+                     "drop: rows that cannot be read are left out and counted, of ten one at most "
+                     "(default: error)");
   add_accepting_flag(verb,
                      "--repeated-header",
                      "skip",
@@ -278,6 +286,7 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   for (const double mark : options.missing.marks)
     flags += fmt::format(" --missing={}", libchar::shortest(mark));
   if (options.missing.overflow) flags += " --overflow nan";
+  if (options.missing.bad_rows) flags += " --bad-rows drop";
   if (options.skip_repeated_header) flags += " --repeated-header skip";
   return flags;
 }

@@ -36,7 +36,8 @@ const std::array kUnits = {
         kDegree / 3600,
         "deg/h|°/h|dph|deg/hr|°/hr|deg/hour|°/hour|degree/h|degrees/h|degrees/hour|degh-1|degh^-1"},
     UnitRow{"rpm", Quantity::angular_rate, std::numbers::pi / 30, "rpm|r/min"},
-    UnitRow{"m/s²", Quantity::acceleration, 1, "m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/sec2|m/sec^2|mps2"},
+    UnitRow{
+        "m/s²", Quantity::acceleration, 1, "m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/ss|m/sec2|m/sec^2|mps2"},
     UnitRow{"mm/s²", Quantity::acceleration, 1e-3, "mm/s2|mm/s^2"},
     UnitRow{"g", Quantity::acceleration, kGravity, "g|g0|gn|gee"},
     UnitRow{"mg", Quantity::acceleration, 1e-3 * kGravity, "mg|mgee"},
@@ -86,12 +87,15 @@ std::optional<std::pair<std::string_view, std::string_view>> plain_sign(std::str
   return std::nullopt;
 }
 
-// Lower case, blanks, '*' and '·' dropped, raised digits lowered: "rad s^-1", "Rad·s⁻¹" and "rad*s-1" are the same.
+// Lower case, blanks, '*' and '·' dropped, raised digits lowered: "rad s^-1", "Rad·s⁻¹", "rad*s-1",
+// "rad.s-1" and "rad/(s)" are the same.
 std::string normal(std::string_view text) {
   std::string out;
+  const bool divided = text.find("/(") != std::string_view::npos;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (c == ' ' || c == '*') continue;
+    if (c == ' ' || c == '*' || (divided && (c == '(' || c == ')'))) continue;
+    if (c == '.' && !out.empty() && text.substr(i + 1).starts_with('s')) continue;
     if (const auto plain = plain_sign(text.substr(i))) {
       out += plain->second;
       i += plain->first.size() - 1;

@@ -160,14 +160,37 @@ std::optional<std::string> value_for(const std::vector<std::string>& words,
 using ScaleNotes =
     std::map<std::string, std::vector<std::string>>;  // what was done, to which channels
 
-// Counts become values: by `channel_scale`, else by a number in the unit. Returns the factors, and
-// says in `notes` what was done.
-std::vector<double> scale_channels(std::vector<Channel>& channels,
+// What makes values in the unit that a log states values in the one that is asked for; 1 where
+// these are not of one quantity.
+double conversion(const std::string& stated, const Channel& channel) {
+  const auto from = find_unit(stated), to = find_unit(channel.unit);
+  if (!from || !to || from->quantity != to->quantity || from->to_si == to->to_si) return 1;
+  if (from->quantity == Quantity::temperature || from->quantity == Quantity::concentration)
+    throw Error(
+        {ErrorKind::usage,
+         "E0331",
+         "",
+         fmt::format("values of {} in {} are not converted to {}",
+                     printable(channel.name),
+                     printable(stated, 20),
+                     printable(channel.unit, 20)),
+         "",
+         fmt::format("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name)});
+  return from->to_si / to->to_si;
+}
+
+// Names and units as they are asked for; counts become values, by `channel_scale`, else by a number
+// in the unit, and values in another unit of the log are converted. Returns the factors, and says in
+// `notes` what was done.
+std::vector<double> dress_channels(std::vector<Channel>& channels,
                                    const ReadOptions& options,
                                    ScaleNotes* notes) {
   std::vector<double> factors(channels.size(), 1);
+  const std::vector<Channel> stated = channels;
+  name_channels(channels, options);
   for (std::size_t c = 0; c < channels.size(); ++c) {
     Channel& channel = channels[c];
+    std::string count;
     if (const auto unit = value_for(options.channel_unit, channel.name)) channel.unit = *unit;
     const auto counts = count_unit(channel.unit);
     if (counts) {
@@ -184,11 +207,15 @@ std::vector<double> scale_channels(std::vector<Channel>& channels,
                      *scale,
                      "such as 0.05 or 1/16.4"});
       factors[c] = *factor;
+    } else if (!counts) {
+      factors[c] = conversion(stated[c].unit, channel);
+      if (factors[c] != 1) count = "converted: 1 " + printable(stated[c].unit);
     }
     if (factors[c] == 1) continue;
     channel.integer = false;
     if (notes != nullptr)
-      (*notes)[fmt::format("one count is {}{}{}",
+      (*notes)[fmt::format("{} is {}{}{}",
+                           count.empty() ? "one count" : count,
                            brief_text(factors[c], 6),
                            channel.unit.empty() ? "" : " ",
                            printable(channel.unit))]
@@ -260,8 +287,7 @@ struct Watch final : BlockSink {
     seen.assign(so_far.channels.size(), false);
     presence.resize(so_far.channels.size());
     LogInfo named = so_far;
-    name_channels(named.channels, options);
-    factors = scale_channels(named.channels, options, nullptr);
+    factors = dress_channels(named.channels, options, nullptr);
     scales = std::any_of(factors.begin(), factors.end(), [](double f) { return f != 1; });
     scaled.resize(scales ? factors.size() : 0);
     next.begin(named);
@@ -302,8 +328,7 @@ struct Watch final : BlockSink {
 LogInfo read_log_head(const std::string& log, const ReadOptions& options) {
   const std::string path = named_log_file(log);
   LogInfo info = open_rows(format_of(path, options), path, options)->info();
-  name_channels(info.channels, options);
-  scale_channels(info.channels, options, nullptr);
+  dress_channels(info.channels, options, nullptr);
   warn_of_unused(info.channels, options, info.warnings);
   warn_of_units(options, info.warnings);
   return info;
@@ -414,9 +439,8 @@ bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, F
 /// The head with the names and units that the channels have in the end.
 LogInfo named_info(const RowSource& source, const ReadOptions& options) {
   LogInfo info = source.info();
-  name_channels(info.channels, options);
   ScaleNotes scaled;
-  scale_channels(info.channels, options, &scaled);
+  dress_channels(info.channels, options, &scaled);
   for (const auto& [count, names] : scaled)
     info.dialect.push_back(count + ": " + first_names(names));
   return info;
@@ -569,8 +593,7 @@ StampedRows read_stamped_rows(const std::string& log,
   out.info = source->info();
   out.info.rows = rows;
   out.samples.resize(out.info.channels.size());
-  name_channels(out.info.channels, options);
-  const std::vector<double> factors = scale_channels(out.info.channels, options, nullptr);
+  const std::vector<double> factors = dress_channels(out.info.channels, options, nullptr);
   for (std::size_t c = 0; c < factors.size(); ++c)
     for (double& value : out.samples[c]) value *= factors[c];
   out.info.warnings = std::move(warnings);

@@ -19,10 +19,11 @@ struct ReadOptions {
     std::vector<double> marks;  ///< values that stand for "no reading" in the log: -999, 65535
     bool overflow =
         false;  ///< so does a number out of a double's range, instead of ending the reading
+    bool bad_rows = false;  ///< rows that cannot be read are left out, of ten one at most (CSV)
   };
 
   std::vector<std::string>
-      channels;  ///< names (or c0, c1…) to read; empty = all. Unknown name: Error(usage) naming the nearest
+      channels;  ///< names or c0, c1… to read, "!name" not to; empty = all. Unknown: Error(usage), the nearest
   std::string
       topic;  ///< of a log with several streams, the one to read; "" = the one that `channels` name, or the only one
   /// whose stamps, where messages have several: "auto", "header" (the sensor's), "log" (when

@@ -105,6 +105,10 @@ Fields<ReadOptions> time_fields() {
       field<&ReadOptions::missing, &ReadOptions::Missing::overflow>(
           "overflow_as_missing",
           {.meaning = "a number out of a double's range counts as missing", .otherwise = "false"}),
+      field<&ReadOptions::missing, &ReadOptions::Missing::bad_rows>(
+          "drop_bad_rows",
+          {.meaning = "rows that cannot be read are left out and counted (CSV)",
+           .otherwise = "false"}),
       field<&ReadOptions::skip_repeated_header>(
           "skip_repeated_header",
           {.meaning = "header lines inside the data are skipped", .otherwise = "false"}),

@@ -3,7 +3,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/sha256.hpp"
-#include "libchar/log/csv/head/delimiter.hpp"
+#include "libchar/log/csv/head/candidates.hpp"
 #include "libchar/log/csv/head/sample.hpp"
 #include "libchar/log/csv/line.hpp"
 #include "libchar/log/csv/rows/number.hpp"
@@ -51,8 +51,9 @@ std::optional<TextTable> read_text_table(const std::string& path, std::size_t ma
   const std::vector<csv::Line> sample(
       lines.begin(),
       lines.begin() + static_cast<std::ptrdiff_t>(std::min(lines.size(), csv::kSample)));
-  const char delimiter = csv::best_score(sample).delimiter;
-  table.decimal = csv::decimal_mark(sample, delimiter);
+  const csv::Candidate best = csv::candidates(sample).front();
+  const char delimiter = best.delimiter;
+  table.decimal = best.decimal;
   table.header = row_of(lines[0], delimiter);
   for (std::size_t i = 1; i < lines.size(); ++i) table.rows.push_back(row_of(lines[i], delimiter));
   return table;

@@ -126,6 +126,7 @@ ReadOptions reading_of(const py::dict& options) {
   given.read("skip_rows", reading.skip_rows);
   given.read("missing", reading.missing.marks);
   given.read("overflow_as_missing", reading.missing.overflow);
+  given.read("drop_bad_rows", reading.missing.bad_rows);
   given.read("skip_repeated_header", reading.skip_repeated_header);
   given.read("topic", reading.topic);
   given.read("time_source", reading.time_source);

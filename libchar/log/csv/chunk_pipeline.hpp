@@ -1,6 +1,6 @@
 #pragma once
-// Chunks of a CSV file parsed in parallel and handed out in file order; a stage of its own hashes them in that order. A thread drives
-// the pipeline of TBB ahead of the caller.
+// Chunks of a CSV file parsed in parallel and handed out in file order; a stage of its own hashes
+// them in that order. A thread drives the pipeline of TBB ahead of the caller.
 
 #include <tbb/parallel_pipeline.h>
 
@@ -18,8 +18,8 @@
 
 namespace libchar::csv {
 
-/// A queue between threads that takes all its memory when it is made: where memory runs out, the end of the pipeline must still get
-/// through.
+/// A queue between threads that takes all its memory when it is made: where memory runs out, the
+/// end of the pipeline must still get through.
 template <class T>
 class FixedQueue {
  public:
@@ -57,8 +57,8 @@ class ChunkPipeline {
   ChunkPipeline& operator=(const ChunkPipeline&) = delete;
   ~ChunkPipeline() { stop(); }
 
-  /// The next chunk and its offset in the file; false behind the last. What reading or parsing threw is thrown here, in the
-  /// chunk's turn.
+  /// The next chunk and its offset in the file; false behind the last. What reading or parsing
+  /// threw is thrown here, in the chunk's turn.
   bool next(ParsedChunk& chunk, std::uint64_t& offset);
   /// Ends the pipeline; what was read is hashed, and no chunk comes after that.
   void stop();

@@ -34,6 +34,16 @@ std::size_t last_line_end(const char* text, std::size_t from, std::size_t size) 
   return 0;
 }
 
+// The same where quoted cells may hold line ends.
+std::size_t last_row_end(std::string_view text, char delimiter) {
+  for (std::size_t from = 0;;) {
+    bool open = false;
+    const std::size_t end = row_end(text, from, delimiter, &open);
+    if (open || end + 1 > text.size() || (text[end] == '\r' && end + 1 == text.size())) return from;
+    from = end + (text[end] == '\r' && text[end + 1] == '\n' ? 2 : 1);
+  }
+}
+
 }  // namespace
 
 ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
@@ -168,12 +178,15 @@ bool ChunkReader::next(RawChunk& chunk) {
   while (cut == 0 && !done_) {
     const std::size_t searched =
         size == 0 ? 0 : size - 1;  // a '\r' that stood last may now have its '\n'
-    chunk.bytes.resize(std::max(chunk.bytes.size(), size + block_ + kPadding));
+    const std::size_t more = std::max(block_, size / 2);  // a long row is not looked at for ever
+    chunk.bytes.resize(std::max(chunk.bytes.size(), size + more + kPadding));
     std::size_t known = 0;
-    size += fill(chunk.bytes.data() + size, block_, known);
+    size += fill(chunk.bytes.data() + size, more, known);
     from_head += known;
     done_ = (ended_ && taken_ >= head_.size()) || size > kMaxLine + block_;
-    cut = done_ ? size : last_line_end(chunk.bytes.data(), searched, size);
+    cut = done_                    ? size
+          : dialect_->lines.quotes ? last_row_end({chunk.bytes.data(), size}, dialect_->delimiter)
+                                   : last_line_end(chunk.bytes.data(), searched, size);
   }
   chunk.hash_from = carried + from_head;
   chunk.hash_to = size;

@@ -1,6 +1,6 @@
 #pragma once
-// The bytes of a CSV file, unpacked where it is compressed, cut into chunks of whole lines, and the SHA-256 of the file as it
-// is stored.
+// The bytes of a CSV file, unpacked where it is compressed, cut into chunks of whole lines, and the
+// SHA-256 of the file as it is stored.
 
 #include <atomic>
 #include <cstdint>
@@ -40,10 +40,10 @@ class ChunkReader {
   /// The first bytes (up to kHeadBytes); `whole` when that is all.
   std::string_view head();
   bool whole() const { return ended_; }
-  /// Chunks start here.
-  void start_at(std::size_t data_offset) {
-    taken_ = data_offset;
-    offset_ = data_offset;
+  /// Chunks start where its rows do.
+  void start(const Dialect& dialect) {
+    dialect_ = &dialect;
+    taken_ = offset_ = dialect.data_offset;
   }
   /// The next chunk; false when there is none.
   bool next(RawChunk& chunk);
@@ -54,6 +54,7 @@ class ChunkReader {
   std::string finish_hash();
 
   std::uint64_t size() const { return size_; }  ///< as stored; 0 when unknown
+  std::string_view packing() const { return unpacker_->what(); }
   bool packed() const { return unpacker_ != nullptr; }
   bool packed_cut() const { return packed() && unpacker_->cut(); }
   std::uint64_t stored_read() const { return stored_; }  ///< bytes of a compressed file
@@ -77,6 +78,7 @@ class ChunkReader {
   std::string path_;
   std::size_t block_;
   int descriptor_ = -1;
+  const Dialect* dialect_ = nullptr;
   bool regular_ = false, ended_ = false, done_ = false;
   std::uint64_t size_ = 0, read_ = 0, offset_ = 0, nuls_ = 0, cut_bytes_ = 0;
   std::string head_;

@@ -1,5 +1,6 @@
-// CSV as a source of rows: chunks of whole lines, parsed side by side ahead of the caller (chunk_pipeline.hpp) or, with one
-// thread, inside next(); here they become rows with warnings, and every byte and cell is accounted for.
+// CSV as a source of rows: chunks of whole lines, parsed side by side ahead of the caller
+// (chunk_pipeline.hpp) or, with one thread, inside next(); here they become rows with warnings, and
+// every byte and cell is accounted for.
 
 #include <fmt/format.h>
 
@@ -29,8 +30,8 @@ namespace {
 
 // Long tables made wide: rows that say whose they are (sensor, time, x, y) become rows with the channels of all.
 
-/// Rows of one stamp become one row; with `cycles` a turn of all groups does, at the stamp of its first. What a group does not say
-/// at a stamp is missing.
+/// Rows of one stamp become one row; with `cycles` a turn of all groups does, at the stamp of its
+/// first. What a group does not say at a stamp is missing.
 class Pivot {
  public:
   Pivot() = default;
@@ -135,10 +136,10 @@ class CsvSource final : public RowSource {
     fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
     info_.rows = expected_rows(head);
-    chunks_.start_at(dialect_.data_offset);
+    chunks_.start(dialect_);
     next_line_ = dialect_.first_data_line;
     info_.bytes = chunks_.size();
-    if (chunks_.packed()) info_.dialect.emplace_back("compressed");
+    if (chunks_.packed()) info_.dialect.emplace_back(chunks_.packing());
     info_.first_line = next_line_;
     const int threads =
         std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);
@@ -173,18 +174,26 @@ class CsvSource final : public RowSource {
     if (pipeline_) pipeline_->stop();
     if (reached_end_) check_account();
     warnings.merge(std::exchange(pending_, {}));
-    add(warnings, "blank_line", "blank lines skipped", blank_);
-    add(warnings, "comment_line", "comment lines between the rows skipped", comment_);
-    add(warnings, "repeated_header", "repeated header lines skipped", repeated_);
+    refuse_many_bad_rows();
+    add(warnings,
+        "bad_row",
+        "rows that cannot be read: left out, or missing where there are no stamps",
+        odd_.bad);
+    add(warnings, "blank_line", "blank lines skipped", odd_.blank);
+    add(warnings, "comment_line", "comment lines between the rows skipped", odd_.comment);
+    add(warnings, "repeated_header", "repeated header lines skipped", odd_.repeated);
     add(warnings,
         "mixed_line_ends",
         "line ends of another kind than the first, accepted",
-        mixed_end_);
-    add(warnings, "infinite_value", kInfiniteValues, infinite_);
-    add(warnings, "number_out_of_range", kNumbersOutOfRange, overflow_);
-    add(warnings, "number_too_small", kNumbersTooSmall, too_small_);
-    if (missing_.count > 0)
-      add(warnings, "missing_cell", missing_cells(read_channels_, missing_per_channel_), missing_);
+        odd_.mixed_end);
+    add(warnings, "infinite_value", kInfiniteValues, odd_.infinite);
+    add(warnings, "number_out_of_range", kNumbersOutOfRange, odd_.overflow);
+    add(warnings, "number_too_small", kNumbersTooSmall, odd_.too_small);
+    if (odd_.missing.count > 0)
+      add(warnings,
+          "missing_cell",
+          missing_cells(read_channels_, missing_per_channel_),
+          odd_.missing);
     if (chunks_.nul_tail() > 0)
       warnings.add("nul_tail",
                    fmt::format("the file ends in {} NUL bytes (cut by a power failure?): dropped{}",
@@ -258,6 +267,21 @@ class CsvSource final : public RowSource {
                                       static_cast<double>(lines));
   }
 
+  // Of a table that is damaged all over nothing should be trusted.
+  void refuse_many_bad_rows() const {
+    constexpr std::uint64_t kFew = 10;
+    if (odd_.bad.count <= kFew || odd_.bad.count * 10 <= rows_ + odd_.bad.count) return;
+    throw Error({ErrorKind::input,
+                 "E0335",
+                 fmt::format("{}:{}", info_.file, odd_.bad.spots[0].line),
+                 fmt::format("{} of {} rows cannot be read, more than one in ten",
+                             odd_.bad.count,
+                             rows_ + odd_.bad.count),
+                 "",
+                 "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say "
+                 "how the cells are written"});
+  }
+
   // Every byte of the file and every cell of its rows went somewhere; anything else is a defect of
   // this reader.
   void check_account() const {
@@ -289,14 +313,15 @@ class CsvSource final : public RowSource {
     chunk.rows.first_line = next_line_;
     chunk_line_ = next_line_;
     if (dialect_.clock_period_ns > 0) pass_midnight(chunk.rows);
-    collect(blank_, chunk.blank);
-    collect(comment_, chunk.comment);
-    collect(repeated_, chunk.repeated);
-    collect(mixed_end_, chunk.mixed_end);
-    collect(infinite_, chunk.infinite);
-    collect(overflow_, chunk.overflow);
-    collect(too_small_, chunk.too_small);
-    collect(missing_, chunk.missing);
+    collect(odd_.bad, chunk.bad);
+    collect(odd_.blank, chunk.blank);
+    collect(odd_.comment, chunk.comment);
+    collect(odd_.repeated, chunk.repeated);
+    collect(odd_.mixed_end, chunk.mixed_end);
+    collect(odd_.infinite, chunk.infinite);
+    collect(odd_.overflow, chunk.overflow);
+    collect(odd_.too_small, chunk.too_small);
+    collect(odd_.missing, chunk.missing);
     if (dialect_.line_end == LineEnd::cr && !cr_noted_) {
       cr_noted_ = true;
       warnings.add("carriage_return_line_ends",
@@ -365,7 +390,9 @@ class CsvSource final : public RowSource {
   RawChunk raw_;
   ParsedChunk current_;
   std::optional<Problem> problem_;
-  Tally blank_, comment_, repeated_, mixed_end_, infinite_, overflow_, too_small_, missing_;
+  struct {
+    Tally bad, blank, comment, repeated, mixed_end, infinite, overflow, too_small, missing;
+  } odd_;
   std::int64_t days_ns_ = 0, last_clock_ns_ = 0;
   std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::uint32_t> fractional_;

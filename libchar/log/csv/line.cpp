@@ -3,23 +3,75 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace libchar::csv {
+
+namespace {
+
+bool padding(char c) {
+  return c == ' ' || c == '\t';
+}
+
+bool separates(char c, char delimiter) {
+  if (delimiter == 0) return c == ',' || c == ';' || padding(c);
+  return c == delimiter || (delimiter == ' ' && c == '\t');
+}
+
+// A quote opens a cell at the beginning of one; anywhere else it is a letter like others.
+bool opens_cell(std::string_view text, std::size_t from, std::size_t quote, char delimiter) {
+  while (quote > from && padding(text[quote - 1]) && !separates(text[quote - 1], delimiter))
+    --quote;
+  return quote == from || separates(text[quote - 1], delimiter);
+}
+
+// The quote that closes the cell whose opening one this is, the end of the text where it has none;
+// nothing where the cell does not end behind it.
+std::optional<std::size_t> closing_quote(std::string_view text, std::size_t quote, char delimiter) {
+  std::size_t close = text.find('"', quote + 1);
+  while (close < text.size() - 1 && text[close + 1] == '"') close = text.find('"', close + 2);
+  if (close >= text.size() || close + 1 == text.size()) return std::min(close, text.size());
+  const char next = text[close + 1];
+  const bool ends = next == '\n' || next == '\r' || padding(next) || separates(next, delimiter);
+  return ends ? std::optional(close) : std::nullopt;
+}
+
+}  // namespace
+
+std::size_t row_end(std::string_view text, std::size_t from, char delimiter, bool* open) {
+  const auto line_end = [&](std::size_t at) {
+    while (at < text.size() && text[at] != '\n' && text[at] != '\r') ++at;
+    return at;
+  };
+  const std::string_view near = text.substr(0, std::min(text.size(), from + kMaxField));
+  std::size_t end = line_end(from);
+  for (std::size_t at = from; at < end; ++at) {
+    at = text.substr(0, end).find('"', at);
+    if (at == std::string_view::npos) break;
+    if (!opens_cell(text, from, at, delimiter)) continue;
+    const auto close = closing_quote(near, at, delimiter);
+    const bool closed = close && *close < near.size();
+    if (open != nullptr && close && !closed && near.size() == text.size()) *open = true;
+    if (!closed) continue;
+    if (*close > end) end = line_end(*close);
+    at = *close;
+  }
+  return end;
+}
 
 Line line_at(std::string_view head, std::size_t offset, std::uint64_t number) {
   Line line;
   line.offset = offset;
   line.number = number;
-  const std::size_t end = head.find_first_of("\r\n", offset);
-  if (end == std::string_view::npos) {
-    line.text = head.substr(offset);
-    line.after = head.size();
-    return line;
-  }
+  const std::size_t end = row_end(head, offset);
   line.text = head.substr(offset, end - offset);
+  line.after = end;
+  if (end == head.size()) return line;
   const bool pair = head[end] == '\r' && end + 1 < head.size() && head[end + 1] == '\n';
   line.end = pair ? LineEnd::crlf : head[end] == '\r' ? LineEnd::cr : LineEnd::lf;
   line.after = end + (pair ? 2 : 1);
+  line.lines += static_cast<std::uint64_t>(
+      std::count(line.text.begin(), line.text.end(), line.end == LineEnd::cr ? '\r' : '\n'));
   return line;
 }
 
@@ -30,9 +82,10 @@ std::string at(const std::string& file,
   return fmt::format("{}:{}:{} (byte {})", file, line, column, byte);
 }
 
-bool is_comment(std::string_view line) {
+bool is_comment(std::string_view line, bool semicolons) {
   line = trimmed(line);
-  return !line.empty() && (line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//");
+  return !line.empty() && (line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//" ||
+                           (semicolons && line[0] == ';'));
 }
 
 std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote) {
@@ -73,6 +126,21 @@ std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote
     ++i;  // the delimiter
   }
   return fields;
+}
+
+std::optional<Field> cell_at(std::string_view line, std::size_t column, char delimiter) {
+  std::size_t from = 0;
+  for (std::size_t left = column; left > 0 && from != std::string_view::npos; --left) {
+    from = line.find(delimiter, from);
+    from += from == std::string_view::npos ? 0 : 1;
+  }
+  const std::size_t end = from == std::string_view::npos ? from : line.find(delimiter, from);
+  if (delimiter == ' ' || line.substr(0, end).find('"') != std::string_view::npos) {
+    std::vector<Field> fields = split(line, delimiter);
+    return column < fields.size() ? std::optional(std::move(fields[column])) : std::nullopt;
+  }
+  if (from == std::string_view::npos) return std::nullopt;
+  return Field{std::string(trimmed(line.substr(from, end - from))), from, false};
 }
 
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after) {

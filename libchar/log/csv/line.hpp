@@ -12,6 +12,8 @@
 
 namespace libchar::csv {
 
+inline constexpr std::size_t kMaxField = std::size_t{1} << 17U;  // 128 KiB
+
 enum class LineEnd : std::uint8_t { none, lf, crlf, cr };
 
 struct Line {
@@ -19,12 +21,19 @@ struct Line {
   std::size_t offset = 0;    ///< in the head
   std::uint64_t number = 1;  ///< physical line
   std::size_t after = 0;     ///< offset behind its line end
-  std::uint64_t lines = 1;   ///< physical lines it spans (a quoted header may hold newlines)
+  std::uint64_t lines = 1;   ///< physical lines it spans (quoted cells may hold newlines)
   LineEnd end = LineEnd::none;
 };
 
-/// The physical line at `offset`. A line that reaches the end of a head that is not the whole file
-/// is cut.
+/// Where the row that begins at `from` ends: the first line end outside quoted cells, else the end
+/// of the text. `open` is set where a quoted cell may close in what follows the text; one that does
+/// not within 128 KiB is no quoted cell. `delimiter` 0: not known.
+std::size_t row_end(std::string_view text,
+                    std::size_t from,
+                    char delimiter = 0,
+                    bool* open = nullptr);
+
+/// The row at `offset`, without its line end. One that reaches the end of a head that is not the whole file is cut.
 Line line_at(std::string_view head, std::size_t offset, std::uint64_t number);
 
 /// One cell of a line: its text without quotes and outer blanks, and where it begins in the line.
@@ -38,12 +47,16 @@ struct Field {
 /// (`open_quote` is set).
 std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote = nullptr);
 
-/// The stamp in front of a line of a terminal, "[2024-05-01 12:00:00.123] 1,2" or "12:00:00.123 -> 1,2", up to `lead`, "]" or
-/// "->"; nothing when the line has none. `after` is where the cells begin.
+/// Cell `column` of a line, without splitting the others where it can be; nothing when the line has fewer.
+std::optional<Field> cell_at(std::string_view line, std::size_t column, char delimiter);
+
+/// The stamp in front of a line of a terminal, "[2024-05-01 12:00:00.123] 1,2" or "12:00:00.123 ->
+/// 1,2", up to `lead`, "]" or "->"; nothing when the line has none. `after` is where the cells
+/// begin.
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after);
 
-/// Does this line start with a comment sign (#, %, //)?
-bool is_comment(std::string_view line);
+/// Does this line start with a comment sign (#, %, //, where `semicolons` ;)?
+bool is_comment(std::string_view line, bool semicolons = false);
 
 /// "FILE:LINE:COL (byte N)".
 std::string at(const std::string& file,

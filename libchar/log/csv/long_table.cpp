@@ -16,7 +16,7 @@
 namespace libchar::csv {
 namespace {
 
-constexpr std::size_t kMostKinds = 64;
+constexpr std::size_t kMostKinds = 64, kMostNumbers = 16;
 
 bool names_kinds(std::string_view name) {
   static constexpr std::array<std::string_view, 22> kNames = {
@@ -28,10 +28,12 @@ bool names_kinds(std::string_view name) {
   return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
 }
 
-std::vector<std::string> values_of(const std::vector<Cells>& rows, std::size_t column) {
+std::vector<std::string> values_of(const std::vector<Cells>& rows,
+                                   std::size_t column,
+                                   std::size_t most = kMostKinds) {
   std::vector<std::string> values;
   for (const Cells& row : rows)
-    if (column < row.size() && values.size() <= kMostKinds &&
+    if (column < row.size() && values.size() <= most &&
         std::find(values.begin(), values.end(), row[column].text) == values.end())
       values.push_back(row[column].text);
   return values;
@@ -80,7 +82,8 @@ Steps steps_of(const std::vector<std::int64_t>& stamps) {
   return out;
 }
 
-// Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that stand, and rise by kind.
+// Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that
+// stand, and rise by kind.
 bool told_apart(const std::vector<Cells>& rows,
                 std::size_t column,
                 bool named,
@@ -102,7 +105,8 @@ bool told_apart(const std::vector<Cells>& rows,
 }
 
 bool whole_numbers(const std::vector<std::string>& values) {
-  return values.size() <= 16 && std::all_of(values.begin(), values.end(), [](const auto& text) {
+  return values.size() <= kMostNumbers &&
+         std::all_of(values.begin(), values.end(), [](const auto& text) {
            const Cell cell = read_cell(text, '.');
            return cell.kind == Cell::value && cell.integer;
          });
@@ -212,7 +216,7 @@ void refuse_long_table(const std::vector<Cells>& rows,
     const bool words = k < dialect.columns.size();
     if (kinds[c] != (words ? ColumnKind::text : ColumnKind::number)) continue;
     if (static_cast<int>(c) == dialect.time.column || column.text.empty()) continue;
-    const std::vector<std::string> values = values_of(rows, c);
+    const std::vector<std::string> values = values_of(rows, c, words ? kMostKinds : kMostNumbers);
     if (values.size() > kMostKinds) continue;
     if (values.size() == 1) {
       if (words && names_kinds(column.name))

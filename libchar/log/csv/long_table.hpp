@@ -20,8 +20,9 @@ void choose_groups(const std::vector<Cells>& rows,
                    Dialect& dialect,
                    const LogInfo& info);
 
-/// Throws Error(input) where a column tells rows of several kinds apart and no option chooses: their stamps go together only by
-/// kind. A column that names kinds and holds one only so far has to keep it.
+/// Throws Error(input) where a column tells rows of several kinds apart and no option chooses:
+/// their stamps go together only by kind. A column that names kinds and holds one only so far has
+/// to keep it.
 void refuse_long_table(const std::vector<Cells>& rows,
                        const std::vector<ColumnKind>& kinds,
                        const ReadOptions& options,

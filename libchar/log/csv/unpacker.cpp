@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/utf8.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_ZLIB
@@ -194,6 +196,42 @@ class Unxz final : public Unpacker {
 };
 #endif
 
+// Characters beyond 0xFFFF, of two units, stand in no table of numbers: each unit becomes '?'.
+class FromUtf16 final : public Unpacker {
+ public:
+  FromUtf16(StoredBytes stored, bool big) : stored_(std::move(stored)), big_(big) {}
+
+  std::size_t read(char* to, std::size_t n) override {
+    while (text_.empty() && !done_) decode();
+    const std::size_t taken = text_.copy(to, n);
+    text_.erase(0, taken);
+    return taken;
+  }
+  bool cut() const override { return done_ && half_; }
+  std::string_view what() const override { return "UTF-16"; }
+
+ private:
+  void decode() {
+    done_ = !stored_.more();
+    for (std::size_t i = 0; !done_ && i < stored_.size(); ++i) {
+      const auto byte = static_cast<unsigned char>(stored_.data()[i]);
+      if (half_) {
+        const std::uint32_t unit = big_ ? *half_ * 256U + byte : byte * 256U + *half_;
+        const bool pair = unit >= 0xD800 && unit < 0xE000;
+        if (unit != 0xFEFF) append_utf8(text_, pair ? '?' : unit);
+        half_.reset();
+      } else {
+        half_ = byte;
+      }
+    }
+  }
+
+  StoredBytes stored_;
+  std::string text_;
+  std::optional<std::uint32_t> half_;
+  bool big_ = false, done_ = false;
+};
+
 }  // namespace
 
 Packing packing_of(std::string_view first_bytes) {
@@ -203,6 +241,12 @@ Packing packing_of(std::string_view first_bytes) {
                                                "7zXZ\0",
                                                kPackingBytes)))
     return Packing::xz;
+  constexpr std::size_t kMark = 2;
+  if (first_bytes.size() > kMark &&
+      first_bytes.substr(kMark, kMark) != std::string_view("\0\0", kMark)) {
+    if (first_bytes.starts_with("\xFF\xFE")) return Packing::utf16le;
+    if (first_bytes.starts_with("\xFE\xFF")) return Packing::utf16be;
+  }
   return Packing::none;
 }
 
@@ -213,6 +257,10 @@ std::unique_ptr<Unpacker> make_unpacker(
   switch (packing) {
     case Packing::none:
       break;
+    case Packing::utf16le:
+    case Packing::utf16be:
+      return std::make_unique<FromUtf16>(StoredBytes(std::move(stored), file),
+                                         packing == Packing::utf16be);
     case Packing::gzip:
 #if LIBCHAR_HAVE_ZLIB
       return std::make_unique<Gunzip>(StoredBytes(std::move(stored), file));

@@ -1,6 +1,8 @@
 #pragma once
-// Compressed text, unpacked as a stream in constant memory: gzip (RFC 1952, several members), Zstandard (RFC 8878, several frames),
-// xz. The libraries are zlib, libzstd and liblzma; a build without one of them says so.
+// Text that is not stored as UTF-8, made so as a stream in constant memory: compressed by gzip (RFC
+// 1952, several members), Zstandard (RFC 8878, several frames) or xz, or written in UTF-16 behind
+// its mark (Excel's "Unicode Text"). The libraries are zlib, libzstd and liblzma; a build without
+// one of them says so.
 
 #include <cstddef>
 #include <functional>
@@ -10,7 +12,7 @@
 
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz };
+enum class Packing { none, gzip, zstd, xz, utf16le, utf16be };
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);
@@ -23,6 +25,7 @@ class Unpacker {
   virtual std::size_t read(char* to, std::size_t n) = 0;
   /// The stored data ended before their end mark.
   virtual bool cut() const = 0;
+  virtual std::string_view what() const { return "compressed"; }
 };
 
 /// `stored` gives the file's bytes, 0 at its end. Throws Error(input) where this build lacks the library.

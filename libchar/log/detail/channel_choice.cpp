@@ -82,6 +82,14 @@ std::optional<std::size_t> position_in(std::string_view word, std::size_t count)
   return whole && index < count ? std::optional(index) : std::nullopt;
 }
 
+bool excludes(std::string_view word) {
+  return word.size() > 1 && word[0] == '!';
+}
+
+bool chooses(const ReadOptions& options) {
+  return !std::all_of(options.channels.begin(), options.channels.end(), excludes);
+}
+
 std::string channel_hint(const std::string& wanted,
                          const std::vector<std::string>& names,
                          const ReadOptions& options) {
@@ -118,11 +126,18 @@ std::vector<std::size_t> choose_channels(const TableColumns& table,
                  "",
                  "`time_column` none reads it as a channel"});
   if (options.channels.empty()) return chosen;
-  chosen.clear();
-  for (const std::string& wanted : options.channels)
-    for (const std::size_t i : columns_of(table, wanted, options, file)) chosen.push_back(i);
+  if (chooses(options)) chosen.clear();
+  for (const std::string& word : options.channels)
+    if (!excludes(word))
+      for (const std::size_t i : columns_of(table, word, options, file)) chosen.push_back(i);
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  for (const std::string& word : options.channels)
+    if (excludes(word))
+      for (const std::size_t i : columns_of(table, word.substr(1), options, file))
+        std::erase(chosen, i);
+  if (chosen.empty())
+    throw Error({ErrorKind::usage, "E0320", file, "no channel is left", options.channels.back()});
   return chosen;
 }
 

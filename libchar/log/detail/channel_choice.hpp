@@ -20,8 +20,8 @@ struct TableColumns {
   bool positions_skip_time = false;  ///< c0, c1… count the columns that are not the time (else all)
 };
 
-/// The columns of options.channels, or all but the time, in file order. Throws Error(usage) for an
-/// unknown name, with the nearest known one, and Error(input) when nothing is left.
+/// The columns of options.channels, or all but the time, in file order, without those of "!name".
+/// Throws Error(usage) for an unknown name, with the nearest known one, and Error(input) when nothing is left.
 std::vector<std::size_t> choose_channels(const TableColumns& table,
                                          const ReadOptions& options,
                                          const std::string& file);
@@ -37,6 +37,12 @@ std::vector<std::size_t> choose_channels(const TableColumns& table,
 std::string channel_hint(const std::string& wanted,
                          const std::vector<std::string>& names,
                          const ReadOptions& options);
+
+/// "!temp": all but those.
+bool excludes(std::string_view word);
+
+/// Does a word of options.channels say which to read, and not only which not to?
+bool chooses(const ReadOptions& options);
 
 /// k of a word "ck" with k < count.
 std::optional<std::size_t> position_in(std::string_view word, std::size_t count);

@@ -48,6 +48,15 @@ std::size_t index_behind(std::string_view cell) {
   return inside.find_first_not_of("0123456789") == std::string_view::npos ? open : 0;
 }
 
+// The one that the last sign of the cell closes: "a (m/(s^2))".
+std::size_t opening_bracket(std::string_view cell, char open, char close) {
+  for (std::size_t i = cell.size(), depth = 0; i-- > 0;) {
+    depth += cell[i] == close ? 1 : 0;
+    if (cell[i] == open && --depth == 0) return i;
+  }
+  return std::string_view::npos;
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
@@ -60,7 +69,7 @@ std::pair<std::string, std::string> name_and_unit(std::string_view column) {
   const std::string_view cell = trimmed(column);
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
     if (cell.empty() || cell.back() != close) continue;
-    const std::size_t at = cell.rfind(open);
+    const std::size_t at = opening_bracket(cell, open, close);
     if (at == std::string_view::npos || at == 0) continue;
     const std::string_view name = trimmed(cell.substr(0, at));
     const std::string_view unit = trimmed(cell.substr(at + 1, cell.size() - at - 2));

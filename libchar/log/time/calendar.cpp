@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <string>
@@ -73,6 +74,7 @@ int month_word(DateScanner& at) {
                                                                "october",
                                                                "november",
                                                                "december"};
+  if (!std::isalpha(static_cast<unsigned char>(at.peek()))) return 0;
   for (std::size_t m = 0; m < kMonths.size(); ++m)
     if (at.word(kMonths[m]) || at.word(kMonths[m].substr(0, 3))) return static_cast<int>(m + 1);
   return 0;
@@ -234,7 +236,7 @@ bool take_zone(DateScanner& at, CalendarStamp& out) {
     const bool west = at.peek() == '-';
     at.rest.remove_prefix(1);
     const std::size_t n = at.digits_ahead();
-    if (n == 0 || n > 4 || n == 3) return false;
+    if (n == 0 || n > 4 || n == 3 || (n == 1 && !named)) return false;
     const int hours = at.fixed(n > 2 ? 2 : n);
     int minutes = 0;
     if (n == 4)
@@ -259,7 +261,10 @@ std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder orde
   DateScanner at{text};
   at.blanks();
   CalendarStamp out;
-  if (at.rest.size() < 4) return std::nullopt;
+  constexpr std::size_t kShortest = 4, kLongest = 64;
+  if (at.rest.size() < kShortest || at.rest.size() > kLongest ||
+      std::none_of(at.rest.begin(), at.rest.end(), decimal_digit))
+    return std::nullopt;
   const bool dated = compact_date(at, out) || numbered_date(at, order, out) || worded_date(at, out);
   if (dated) {
     if (!at.take('T') && !at.take('_')) {

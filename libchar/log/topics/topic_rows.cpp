@@ -96,10 +96,11 @@ TopicChoice choice_of(const std::vector<LogTopic>& topics,
   TopicChoice choice;
   choice.topic = topic;
   for (const std::string& word : options.channels) {
-    const auto whole = qualified(topics, word);
-    for (std::string& field :
-         fields_of(topics[topic], whole && whole->first == topic ? whole->second : word))
-      choice.channels.push_back(std::move(field));
+    const std::string name = word.substr(excludes(word) ? 1 : 0);
+    const auto whole = qualified(topics, name);
+    for (const std::string& field :
+         fields_of(topics[topic], whole && whole->first == topic ? whole->second : name))
+      choice.channels.push_back((excludes(word) ? "!" : "") + field);
   }
   return choice;
 }
@@ -139,6 +140,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
                               const std::string& file) {
   std::optional<std::set<std::size_t>> common;
   for (const std::string& word : options.channels) {
+    if (excludes(word)) continue;
     const std::set<std::size_t> found = topics_of(topics, word);
     if (found.empty())
       refuse(file,
@@ -205,7 +207,7 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
     if (topics[t].sensor) sensors.push_back(t);
   }
   if (usable.size() == 1) return choice_of(topics, usable[0], options);
-  if (!options.channels.empty() && !usable.empty()) {
+  if (chooses(options) && !usable.empty()) {
     const std::size_t t = topic_of_channels(topics, options, file);
     refuse_unreadable(topics[t], file);
     return choice_of(topics, t, options);
@@ -360,7 +362,7 @@ class TopicRows final : public RowSource {
   // Those asked for, or the usual ones; fields that are left out by default are said.
   std::vector<std::size_t> chosen_fields(const TableColumns& columns, const ReadOptions& options) {
     std::vector<std::size_t> chosen = choose_channels(columns, options, info_.file);
-    if (!options.channels.empty()) return chosen;
+    if (chooses(options)) return chosen;
     const std::vector<std::size_t> usual = reader_->usual_fields(topic_);
     std::vector<std::size_t> kept;
     for (const std::size_t i : chosen)

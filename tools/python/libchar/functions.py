@@ -139,7 +139,7 @@ def read(path: Union[str, "os.PathLike[str]"], *, channels: Names = None, names:
          time_column: Optional[str] = None, time_unit: Optional[str] = None, format: Optional[str] = None,
          delimiter: Optional[str] = None, decimal: Optional[str] = None, header: Optional[str] = None,
          encoding: Optional[str] = None, skip_rows: Optional[int] = None, overflow_as_missing: Optional[bool] = None,
-         missing: Optional[Sequence[float]] = None,
+         missing: Optional[Sequence[float]] = None, drop_bad_rows: Optional[bool] = None,
          skip_repeated_header: Optional[bool] = None, topic: Optional[str] = None, time_source: Optional[str] = None,
          threads: Optional[int] = None) -> Recording:
     """Reads a log of any format that the program reads (docs/formats.md).

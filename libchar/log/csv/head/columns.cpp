@@ -1,6 +1,8 @@
 #include "libchar/log/csv/head/columns.hpp"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/core/units.hpp"
@@ -32,34 +34,34 @@ bool like_words(std::string_view text) {
          text.find(':') != std::string_view::npos;
 }
 
-struct Census {
-  std::size_t numbers = 0, dates = 0, clocks = 0, stamps = 0, words = 0, odd = 0;
+using KindCounts = std::array<std::size_t, static_cast<std::size_t>(CellKind::odd) + 1>;
 
-  void add(std::string_view text, NumberStyle style) {
-    const Cell cell = read_sampled(text, style);
-    if (cell.kind == Cell::missing) return;
-    if (cell.kind != Cell::bad) {
-      ++numbers;
-    } else if (const auto stamp = read_calendar(text, DateOrder::day_first),
-               other = read_calendar(text, DateOrder::month_first);
-               stamp || other) {
-      const CalendarStamp& s = stamp ? *stamp : *other;
-      ++(s.date && s.clock ? stamps : s.date ? dates : clocks);
-    } else {
-      ++(number_and_unit(text) || !like_words(text) ? odd : words);
-    }
+ColumnKind kind_of(const KindCounts& counts) {
+  const auto count = [&](CellKind kind) { return counts[static_cast<std::size_t>(kind)]; };
+  CellKind most = CellKind::blank;
+  for (const CellKind kind : {CellKind::stamp,
+                              CellKind::date,
+                              CellKind::clock,
+                              CellKind::number,
+                              CellKind::word,
+                              CellKind::odd})
+    if (count(kind) > (most == CellKind::blank ? 0 : count(most))) most = kind;
+  switch (most) {
+    case CellKind::blank:
+      return ColumnKind::empty;
+    case CellKind::stamp:
+      return ColumnKind::calendar;
+    case CellKind::date:
+      return ColumnKind::date;
+    case CellKind::clock:
+      return ColumnKind::clock;
+    default:
+      break;
   }
-
-  ColumnKind kind() const {
-    const std::size_t most = std::max({numbers, dates, clocks, stamps, words, odd});
-    if (most == 0) return ColumnKind::empty;
-    if (stamps == most) return ColumnKind::calendar;
-    if (dates == most) return ColumnKind::date;
-    if (clocks == most) return ColumnKind::clock;
-    return words > 1 && numbers + dates + clocks + stamps + odd == 0 ? ColumnKind::text
-                                                                     : ColumnKind::number;
-  }
-};
+  const std::size_t cells = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  const bool text = cells > 1 && count(CellKind::word) + count(CellKind::blank) == cells;
+  return text ? ColumnKind::text : ColumnKind::number;
+}
 
 }  // namespace
 
@@ -106,7 +108,9 @@ Cell read_styled(std::string_view text, NumberStyle style) {
 }
 
 std::optional<MeasuredCell> number_and_unit(std::string_view text) {
+  constexpr std::size_t kLongestUnit = 24;
   const std::size_t end = text.find_first_not_of(kOfNumbers);
+  if (end != std::string_view::npos && text.size() - end > kLongestUnit) return std::nullopt;
   if (end == 0 || end == std::string_view::npos || text.find_first_of("0123456789") >= end)
     return std::nullopt;
   const MeasuredCell cell{trimmed(text.substr(0, end)), text.substr(end)};
@@ -127,16 +131,28 @@ Cell read_sampled(std::string_view text, NumberStyle style) {
   return measured ? read_styled(measured->number, style) : cell;
 }
 
+CellKind cell_kind(const Field& field, NumberStyle style) {
+  const std::string_view text = field.text;
+  const Cell cell = read_sampled(text, style);
+  if (cell.kind == Cell::missing) return CellKind::blank;
+  if (cell.kind != Cell::bad) return CellKind::number;
+  const auto day = read_calendar(text, DateOrder::day_first);
+  if (const auto stamp = day ? day : read_calendar(text, DateOrder::month_first))
+    return !stamp->clock ? CellKind::date : stamp->date ? CellKind::stamp : CellKind::clock;
+  const bool word = field.quoted || (like_words(text) && !number_and_unit(text));
+  return word ? CellKind::word : CellKind::odd;
+}
+
 std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,
                                      std::size_t columns,
                                      NumberStyle style) {
-  std::vector<Census> census(columns);
+  std::vector<KindCounts> counts(columns, KindCounts{});
   for (const Cells& row : rows)
     for (std::size_t c = 0; c < std::min(columns, row.size()); ++c)
-      census[c].add(row[c].text, style);
+      ++counts[c][static_cast<std::size_t>(cell_kind(row[c], style))];
   std::vector<ColumnKind> kinds;
-  kinds.reserve(census.size());
-  for (const Census& one : census) kinds.push_back(one.kind());
+  kinds.reserve(columns);
+  for (const KindCounts& one : counts) kinds.push_back(kind_of(one));
   return kinds;
 }
 

@@ -34,11 +34,16 @@ std::optional<MeasuredCell> number_and_unit(std::string_view text);
 /// Two spellings of one unit, in UTF-8 or Windows-1252.
 bool same_unit(std::string_view a, std::string_view b);
 
-/// read_styled for cells that are studied, where a unit behind the number does no harm; rows must have the unit of their column.
+/// read_styled for cells that are studied, where a unit behind the number does no harm; rows must
+/// have the unit of their column.
 Cell read_sampled(std::string_view text, NumberStyle style);
 
 /// Length of a label and its sign in front of a number, "ax=" or "ax:"; 0 when there is none.
 std::size_t label_length(std::string_view text);
+
+/// What a cell looks like: a date with its clock time, a date, a clock time; odd is what is none of these.
+enum class CellKind { blank, number, stamp, date, clock, word, odd };
+CellKind cell_kind(const Field& field, NumberStyle style);
 
 enum class ColumnKind {
   empty,     ///< no cell with anything in it
@@ -46,7 +51,7 @@ enum class ColumnKind {
   calendar,  ///< dates with clock times
   date,
   clock,
-  text,  ///< words in every cell, two or more
+  text,  ///< words in every cell that is not empty, of two cells or more
 };
 
 /// Of the rows that have `columns` cells.

@@ -16,8 +16,7 @@
 
 namespace libchar::csv {
 
-inline constexpr std::size_t kMaxLine = std::size_t{1} << 20U;   // 1 MiB
-inline constexpr std::size_t kMaxField = std::size_t{1} << 17U;  // 128 KiB
+inline constexpr std::size_t kMaxLine = std::size_t{1} << 20U;  // 1 MiB
 inline constexpr std::size_t kMaxName = 1024;
 inline constexpr std::size_t kMaxColumns = 100001;  // 100 000 channels and the stamps
 inline constexpr std::size_t kHeadBytes =
@@ -52,12 +51,19 @@ struct RowFilter {
   bool must = false;
 };
 
+/// What lines may hold beside cells.
+struct LineForm {
+  bool quotes = false;              ///< cells of the head stand in them, and may hold line ends
+  bool semicolon_comments = false;  ///< ';' begins one, as '#' does
+};
+
 struct Dialect {
   char delimiter = ',';  ///< ' ' stands for runs of blanks and tabs
   char decimal = '.';
   char thousands = 0;  ///< between groups of three digits; 0 = none
   std::string lead;    ///< what ends a stamp in front of the cells, "]" or "->"; "" = none
   LineEnd line_end = LineEnd::lf;
+  LineForm lines;
   bool trailing_delimiter = false;  ///< lines end with a delimiter and nothing behind it
   bool has_header = false;
   std::string header;  ///< the header line as it stands in the file, to recognise a repeated one

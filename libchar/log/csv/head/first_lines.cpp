@@ -122,6 +122,11 @@ double interval_of(const Statement& said) {
 
 std::optional<double> stated_rate_hz(std::string_view line) {
   const std::string lower = ascii_lower(line);
+  const std::size_t sps =
+      lower.find(" sps,");  // "12000 samples, 20 sps, 2018-01-01T00:00:00, SLIST"
+  const std::size_t before = sps == std::string::npos ? sps : lower.rfind(',', sps);
+  if (before != std::string::npos)
+    return parse_double(trimmed(std::string_view(lower).substr(before + 1, sps - before - 1)));
   const Statement said = statement_in(lower);
   if (!said.number || said.key.empty()) return std::nullopt;
   double rate = hertz_of(said);
@@ -131,10 +136,10 @@ std::optional<double> stated_rate_hz(std::string_view line) {
   return rate;
 }
 
-std::optional<double> stated_tick_s(std::string_view line) {
+std::optional<double> stated_count(std::string_view line, std::string_view key) {
   const std::string lower = ascii_lower(line);
   const Statement said = statement_in(lower);
-  return said.key == "tscale" && said.number && *said.number > 0 ? said.number : std::nullopt;
+  return said.key == key && said.number && *said.number > 0 ? said.number : std::nullopt;
 }
 
 namespace {
@@ -228,15 +233,13 @@ LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, Nu
   LineCensus out;
   out.fits = line.size() == kinds.size();
   for (std::size_t c = 0; c < std::min(line.size(), kinds.size()); ++c) {
-    const std::string& text = line[c].text;
     if (kinds[c] == ColumnKind::text || kinds[c] == ColumnKind::empty) continue;
-    const Cell cell = read_sampled(text, style);
-    if (cell.kind == Cell::missing) continue;
-    const bool number = cell.kind != Cell::bad;
-    const bool calendar = !number && (read_calendar(text, DateOrder::day_first) ||
-                                      read_calendar(text, DateOrder::month_first));
-    ++(kinds[c] == ColumnKind::number ? (number ? out.good : out.bad)
-                                      : (calendar ? out.good : out.bad));
+    const CellKind kind = cell_kind(line[c], style);
+    if (kind == CellKind::blank) continue;
+    const bool good = kinds[c] == ColumnKind::number
+                          ? kind == CellKind::number
+                          : kind > CellKind::number && kind < CellKind::word;
+    ++(good ? out.good : out.bad);
   }
   return out;
 }
@@ -264,21 +267,13 @@ bool campbell(const std::vector<Cells>& lines) {
   return lines.size() > 4 && (lines[0][0].text == "TOA5" || lines[0][0].text == "TOACI1");
 }
 
-// A line of words with one cell too many or too few, directly in front of the rows.
-bool names_off_by_one(const Cells& line, std::size_t columns) {
-  if (line.size() + 1 != columns && line.size() != columns + 1) return false;
-  return line.size() > 1 && std::all_of(line.begin(), line.end(), [](const Field& field) {
-           return read_cell(field.text, '.').kind == Cell::bad &&
-                  read_cell(field.text, ',').kind == Cell::bad;
-         });
-}
-
 }  // namespace
 
 TableStart find_table_start(const std::vector<Cells>& lines,
                             const std::vector<ColumnKind>& kinds,
                             NumberStyle style) {
   if (campbell(lines)) return {4, 1, 2};
+  if (lines[0][0].text.starts_with("TIMESERIES ")) return {1, {}, {}};  // SLIST of seismology
   TableStart out;
   std::vector<LineCensus> census;
   census.reserve(lines.size());
@@ -294,13 +289,12 @@ TableStart find_table_start(const std::vector<Cells>& lines,
   const auto rows_at = static_cast<std::size_t>(first_row - census.begin());
   if (first_row == census.end() || rows_at == 0) return out;
   out.data = rows_at;
-  if (!census[rows_at - 1].fits && names_off_by_one(lines[rows_at - 1], kinds.size())) {
-    out.names = rows_at - 1;
-    return out;
-  }
-  std::size_t last = rows_at;  // the last line in front that is words only
-  while (last > 0 && !census[last - 1].words()) --last;
-  if (last > 0) {
+  // Back over rows that are damaged to the last line of words alone.
+  std::size_t last = rows_at;
+  while (last > 0 && !census[last - 1].words() &&
+         (census[last - 1].fits || census[last - 1].good > 0))
+    --last;
+  if (last > 0 && census[last - 1].words()) {
     out.data = last;
     out.names = last - 1;
     const bool named_above = last > 1 && census[last - 2].fits && census[last - 2].bad > 0;
@@ -310,19 +304,20 @@ TableStart find_table_start(const std::vector<Cells>& lines,
     }
     return out;
   }
-  // No line of words: names with numbers among them (c, 1, 2), a row that is damaged, or lines that do not fit.
-  const auto fitting =
-      std::find_if(census.begin(), first_row, [](const LineCensus& line) { return line.fits; });
+  // No line of words: names with numbers among them (c, 1, 2), or a row that is damaged.
+  const auto fitting = std::find_if(census.begin() + static_cast<std::ptrdiff_t>(last),
+                                    first_row,
+                                    [](const LineCensus& line) { return line.fits; });
   if (fitting != first_row) {
     const auto at = static_cast<std::size_t>(fitting - census.begin());
     out.names = at;
     out.data = at + 1;
     return out;
   }
-  // Names, one too many or too few, directly in front of the rows.
-  const std::size_t cells = lines[rows_at - 1].size();
+  // Too many names or too few, which the first row tells.
+  const std::size_t cells = lines[0].size();
   const std::size_t off = cells > kinds.size() ? cells - kinds.size() : kinds.size() - cells;
-  if (cells > 1 && 2 * off <= kinds.size() + 1) out.names = rows_at - 1;
+  if (rows_at == 1 && cells > 1 && 2 * off <= kinds.size() + 1) out.names = 0;
   return out;
 }
 

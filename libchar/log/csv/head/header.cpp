@@ -2,11 +2,240 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <tuple>
+#include <utility>
 
+#include "libchar/core/error.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/core/text/utf8.hpp"
+#include "libchar/log/csv/head/first_lines.hpp"
 
 namespace libchar::csv {
+namespace {
+
+// Text of the header in UTF-8; nothing when it is not what it is said to be. What is not UTF-8 and
+// does not begin with the mark of it was written by an older Windows, as a rule.
+std::optional<std::string> decoded(Study& study, const std::string& text) {
+  const std::string& encoding = study.options.encoding;
+  if (encoding == "latin1") return latin1_to_utf8(text);
+  if (encoding == "cp1252") return windows1252_to_utf8(text);
+  if (encoding != "auto" && encoding != "utf-8")
+    throw Error({ErrorKind::usage,
+                 "E0202",
+                 "`encoding`",
+                 "unknown encoding",
+                 encoding,
+                 "use auto, utf-8, latin1 or cp1252"});
+  if (first_invalid_utf8(text) == std::string::npos) return text;
+  if (encoding == "utf-8" || study.marked_utf8) return std::nullopt;
+  auto guessed = windows1252_to_utf8(text);
+  if (guessed && !std::exchange(study.encoding_guessed, true))
+    study.info.guesses.emplace_back(
+        "encoding: the header is not UTF-8 and read as Windows-1252 (`encoding` chooses)");
+  return guessed;
+}
+
+std::string header_text(Study& study, const Field& field, const Line& line, std::size_t indent) {
+  if (field.text.size() > kMaxName)
+    refuse(study,
+           line,
+           field.offset + indent,
+           "E0305",
+           "channel name longer than 1024 bytes",
+           field.text);
+  if (auto text = decoded(study, field.text)) return *text;
+  const std::size_t invalid = first_invalid_utf8(field.text);
+  const std::size_t column =
+      field.offset + (field.quoted ? 1 : 0) + indent + (invalid == std::string::npos ? 0 : invalid);
+  refuse(study,
+         line,
+         column,
+         "E0302",
+         fmt::format("neither UTF-8 nor Windows-1252: byte 0x{:02X} at offset {}",
+                     static_cast<unsigned char>(field.text[invalid]),
+                     line.offset + column),
+         field.text,
+         "`encoding` latin1 takes every byte for the character of ISO 8859-1");
+}
+
+// EuRoC writes "#timestamp [ns],w_RS_S_x [rad s^-1],…", Gulf Coast Data Concepts ";Headers,
+// time,Ax,Ay": the last comment before the data, when it has as many cells.
+bool named_by_comment(Study& study) {
+  if (study.options.header != "auto" || study.columns < 2 || study.comments.empty()) return false;
+  constexpr std::string_view kHeaders = "headers,";
+  const Line& line = study.comments.back();
+  std::string_view text = line.text;
+  text.remove_prefix(std::min(text.find_first_not_of(" \t#%/;"), text.size()));
+  if (ascii_lower(text.substr(0, kHeaders.size())) == kHeaders) text.remove_prefix(kHeaders.size());
+  if (text.empty()) return false;
+  const Cells names = table_cells(study, text);
+  const bool numbers = std::all_of(names.begin(), names.end(), [&](const Field& name) {
+    return read_sampled(name.text, study.style()).kind != Cell::bad;
+  });
+  if (names.size() != study.columns || numbers) return false;
+  read_names(study, line, text);
+  return true;
+}
+
+// "ax=0.01 ay=0.02", "ax: 0.01, ay: 0.02", "ax: 0.01 ay: 0.02": every cell, or the one in front of it, says its name.
+bool named_by_labels(Study& study, const Cells& first) {
+  bool any = false;
+  for (std::size_t c = 0; c < study.dialect.columns.size(); ++c) {
+    const std::string& text = first[c].text;
+    const std::string_view before = c > 0 ? std::string_view(first[c - 1].text) : "";
+    std::string_view name;
+    if (label_length(text) > 0)
+      name = std::string_view(text).substr(0, text.find_first_of("=:"));
+    else if (before.size() > 1 && (before.back() == ':' || before.back() == '=') &&
+             label_length(std::string(before) + "0") > 0)
+      name = before.substr(0, before.size() - 1);
+    if (name.empty()) continue;
+    study.dialect.columns[c].text = decoded(study, std::string(trimmed(name))).value_or("");
+    any = true;
+  }
+  if (any) study.info.dialect.emplace_back("names in front of the values");
+  return any;
+}
+
+// "0.005 sec" and "21.3 °C": the unit behind the first number of a column is that of the column.
+void take_cell_unit(
+    Study& study, std::string unit, const Line& line, const Field& field, Column& column) {
+  const std::string named = name_and_unit(column.text).second;
+  const std::string& said = named.empty() ? column.unit_below : named;
+  if (!said.empty() && !same_unit(said, unit))
+    refuse(study,
+           line,
+           field.offset,
+           "E0333",
+           fmt::format("a value in {}, and the header says {}",
+                       printable(decoded(study, unit).value_or(unit), 20),
+                       printable(said, 20)),
+           field.text,
+           "mend the one that is wrong");
+  if (said.empty()) column.unit_below = decoded(study, unit).value_or("");
+  column.cell_unit = std::move(unit);
+}
+
+bool find_cell_units(Study& study) {
+  bool found = false;
+  std::vector<bool> seen(study.dialect.columns.size(), false);
+  for (const Line& line : study.sample) {
+    if (line.offset < study.dialect.data_offset) continue;
+    const Cells row = cells_in(study.dialect, line.text);
+    for (std::size_t c = 0; c < std::min(row.size(), seen.size()); ++c) {
+      if (seen[c] || read_styled(row[c].text, study.style()).kind == Cell::missing) continue;
+      seen[c] = true;
+      const auto measured = number_and_unit(row[c].text);
+      if (!measured) continue;
+      take_cell_unit(study, std::string(measured->unit), line, row[c], study.dialect.columns[c]);
+      found = true;
+    }
+  }
+  return found;
+}
+
+// A delimiter at the end of the first line, or of the first row, that has nothing behind it.
+void find_trailing(Study& study) {
+  for (std::size_t i = 0; i < study.sample.size() && !study.dialect.trailing_delimiter; ++i) {
+    const Line& line = study.sample[i];
+    const Cells fields = cells_in(study.dialect, line.text);
+    if (study.dialect.delimiter == ' ' || fields.size() != study.columns + 1 ||
+        !fields.back().text.empty() || fields.back().quoted)
+      continue;
+    study.dialect.trailing_delimiter = true;
+    study.info.warnings.add("trailing_delimiter",
+                            "lines end with a delimiter: the empty last column is dropped",
+                            place_name(line.number, line.lines > 1 ? 1 : fields.back().offset + 1));
+  }
+}
+
+}  // namespace
+
+void read_names(Study& study, const Line& line, std::string_view text) {
+  Dialect& dialect = study.dialect;
+  dialect.has_header = true;
+  dialect.header = std::string(text);
+  study.info.dialect.push_back(fmt::format("header in line {}", line.number));
+  find_trailing(study);
+  bool open = false;
+  const std::size_t indent = static_cast<std::size_t>(text.data() - line.text.data());
+  if (const Cells all = cells_in(dialect, text, &open); open)
+    refuse(study,
+           line,
+           all.back().offset + indent,
+           "E0306",
+           "a quote is opened here and never closed in the header");
+  const Cells fields = table_cells(study, text);
+  if (fields.size() > kMaxColumns)
+    refuse(study,
+           line,
+           0,
+           "E0305",
+           fmt::format("{} columns, the limit is {}", fields.size(), kMaxColumns));
+  std::size_t counted = 0, newline = std::string_view::npos;
+  std::uint64_t lines = 0;
+  for (const Field& field : fields) {
+    for (; counted < field.offset; ++counted)
+      if (text[counted] == '\n' || text[counted] == '\r') {
+        newline = counted;
+        lines += text[counted] == '\n';
+      }
+    Column& added = dialect.columns.emplace_back();
+    added.text = header_text(study, field, line, indent);
+    added.line = line.number + lines;
+    added.position =
+        newline == std::string_view::npos ? field.offset + indent + 1 : field.offset - newline;
+  }
+}
+
+void read_units(Study& study, const Line& line) {
+  const Cells fields = cells_in(study.dialect, line.text);
+  for (std::size_t c = 0; c < std::min(fields.size(), study.dialect.columns.size()); ++c) {
+    std::string_view unit = fields[c].text;
+    if (unit.size() > 2 && ((unit.front() == '(' && unit.back() == ')') ||
+                            (unit.front() == '[' && unit.back() == ']')))
+      unit = trimmed(unit.substr(1, unit.size() - 2));
+    if (unit != "TS" && unit != "RN" && unit != "Sequence" && unit.size() <= 40)
+      study.dialect.columns[c].unit_below = decoded(study, std::string(unit)).value_or("");
+  }
+  study.info.dialect.push_back(fmt::format("units in line {}", line.number));
+}
+
+void do_without_names(Study& study) {
+  if (named_by_comment(study)) return;
+  const Line& first = study.sample[0];
+  // What looks like the end of the first rows may be a column that is filled further on.
+  const Cells all = cells_in(study.dialect, first.text);
+  if (all.size() > table_cells(study, first.text).size() &&
+      !filled_cells(study, study.columns, 1).empty())
+    ++study.columns;
+  const Cells fields = table_cells(study, first.text);
+  for (const Field& field : fields)
+    study.dialect.columns.emplace_back().position = field.offset + 1;
+  const bool labelled = named_by_labels(study, fields);
+  find_trailing(study);
+  study.info.dialect.push_back("no header");
+  if (study.options.header == "auto" && !labelled)
+    study.info.warnings.add(
+        "no_header",
+        "no header line: the columns are named c0, c1… and the first line is data",
+        place_name(first.number, 1));
+}
+
+void find_other_units(Study& study) {
+  if (find_cell_units(study)) study.info.dialect.emplace_back("units behind the numbers");
+  // Gyroflow's .gcsv holds counts: gx, gy, gz and ax, ay, az.
+  for (const Line& line : study.preamble)
+    for (const auto& [key, axes, unit] :
+         {std::tuple("gscale", 'g', "rad/s"), std::tuple("ascale", 'a', "g")})
+      if (const auto count = stated_count(line.text, key))
+        for (Column& column : study.dialect.columns)
+          if (column.text.size() == 2 && column.text[0] == axes)
+            column.unit_below = fmt::format("{} {}", shortest(*count), unit);
+}
 
 std::string place_name(std::uint64_t line, std::uint64_t column) {
   return column <= 1 ? fmt::format("line {}", line)

@@ -1,11 +1,26 @@
 #pragma once
-// What the cells and comments around a header line mean.
+// Names and units of the columns of a CSV file: by a line of names and one of units, by the comment
+// in front of the rows, by what stands in the cells.
 
+#include <optional>
 #include <string>
 
-#include "libchar/log/csv/head/dialect.hpp"
+#include "libchar/log/csv/head/study.hpp"
 
 namespace libchar::csv {
+
+/// The columns by a line of names, `text` of it behind a sign of comments.
+void read_names(Study& study, const Line& line, std::string_view text);
+
+/// Units below them.
+void read_units(Study& study, const Line& line);
+
+/// The columns of a table whose first row is `sample[0]` and has no line of names: by the last
+/// comment before it, by labels in front of the values, or none.
+void do_without_names(Study& study);
+
+/// Units behind the numbers of the rows ("0.005 sec"), and of counts whose scale the preamble states.
+void find_other_units(Study& study);
 
 /// Fills names and units of dialect.columns from their header texts; duplicates are an error,
 /// strange names a warning.

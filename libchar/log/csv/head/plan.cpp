@@ -24,6 +24,7 @@ Plan plan_columns(Dialect& dialect, const ReadOptions& options, LogInfo& info) {
   }
   plan.dialect = &dialect;
   plan.overflow_as_missing = options.missing.overflow;
+  plan.drop_bad_rows = options.missing.bad_rows;
   plan.skip_repeated_header = options.skip_repeated_header;
   plan.target.assign(dialect.columns.size(), Plan::kSkip);
   if (table.time) plan.target[*table.time] = Plan::kTime;

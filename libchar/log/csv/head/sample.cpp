@@ -1,28 +1,22 @@
 #include "libchar/log/csv/head/sample.hpp"
 
-#include <algorithm>
-
 #include "libchar/core/error.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
 
 namespace libchar::csv {
 namespace {
 
-// A header may hold newlines inside quotes: the line goes on until its quotes are closed.
-void join_quoted_lines(std::string_view head, Line& line) {
-  const auto open = [](std::string_view text) {
-    return std::count(text.begin(), text.end(), '"') % 2 != 0;
-  };
-  if (!open(line.text)) return;
-  Line longer = line;
-  while (open(longer.text) && longer.after < head.size() && longer.text.size() < kMaxField) {
-    const Line next = line_at(head, longer.after, 0);
-    longer.text = head.substr(longer.offset, next.offset + next.text.size() - longer.offset);
-    longer.after = next.after;
-    longer.end = next.end;
-    ++longer.lines;
+// ';' begins a comment where it does not separate cells: the first line that begins with something else has none.
+bool semicolons_comment(std::string_view head, std::size_t offset) {
+  for (bool any = false; offset < head.size();) {
+    const Line line = line_at(head, offset, 0);
+    const std::string_view text = trimmed(line.text);
+    offset = line.after;
+    if (!text.empty() && text[0] != ';' && !is_comment(text))
+      return any && text.find(';') == std::string_view::npos;
+    any = any || (!text.empty() && text[0] == ';');
   }
-  if (!open(longer.text)) line = longer;
+  return false;
 }
 
 }  // namespace
@@ -33,8 +27,9 @@ Sample sample_lines(std::string_view head,
                     std::uint64_t number,
                     const std::string& file) {
   Sample sample;
+  sample.semicolon_comments = semicolons_comment(head, offset);
   while (offset < head.size() && sample.lines.size() < kSample) {
-    Line line = line_at(head, offset, number);
+    const Line line = line_at(head, offset, number);
     if (line.end == LineEnd::none && !whole) {
       if (sample.lines.empty())  // else the row parser tells
         throw Error({ErrorKind::input,
@@ -46,10 +41,10 @@ Sample sample_lines(std::string_view head,
       break;
     }
     const std::string_view text = trimmed(line.text);
-    if (sample.lines.empty() && is_comment(text)) {
+    const bool comment = is_comment(text, sample.semicolon_comments);
+    if (sample.lines.empty() && comment) {
       sample.comments.push_back(line);
-    } else if (!text.empty() && !is_comment(text)) {
-      if (sample.lines.empty()) join_quoted_lines(head, line);
+    } else if (!text.empty() && !comment) {
       sample.lines.push_back(line);
     }
     offset = line.after;

@@ -11,6 +11,7 @@ struct Sample {
   std::vector<Line>
       lines;  ///< neither blank nor comments; the first may be a header of several physical lines
   std::vector<Line> comments;  ///< before the first of them
+  bool semicolon_comments = false;
 };
 
 /// The first kSample lines of `head` (all of the file when `whole`) from `offset` on, whose physical line has this

@@ -1,6 +1,6 @@
 #pragma once
-// The nearest double to a decimal number w · 10^q with few digits, without std::from_chars: the arithmetic of the scalar tier
-// (number.hpp).
+// The nearest double to a decimal number w · 10^q with few digits, without std::from_chars: the
+// arithmetic of the scalar tier (number.hpp).
 
 #include <array>
 #include <bit>
@@ -89,10 +89,11 @@ inline bool divide_by_power_of_ten(std::uint64_t w, int n, double& out) {
   return true;
 }
 
-/// The nearest double to w · 10^q, w made of `digits` digits; false where it takes more than one rounding and 128 bits, which is
-/// for std::from_chars to do. The first way that is exact wins:
+/// The nearest double to w · 10^q, w made of `digits` digits; false where it takes more than one
+/// rounding and 128 bits, which is for std::from_chars to do. The first way that is exact wins:
 ///   w < 2^53 and |q| <= 22      one rounding of w · 10^q or w / 10^-q            (Clinger 1990)
-///   w < 2^64 and -27 <= q < 0   128-bit reciprocal of 5^-q, unless the product lies too near a rounding boundary to be sure
+// /   w < 2^64 and -27 <= q < 0   128-bit reciprocal of 5^-q, unless the product lies too near a
+// rounding boundary to be sure
 ///                               (Lemire, "Number parsing at a gigabyte per second", 2021)
 inline bool nearest_double(std::uint64_t w, std::ptrdiff_t digits, int q, double& out) {
   const auto one_rounding = [&] {

@@ -21,6 +21,7 @@ bool is_word(std::string_view text, std::string_view word) {
 
 bool means_missing(std::string_view text) {
   if (text.empty()) return true;
+  if (is_digit(text.back())) return false;
   for (const char* word :
        {"nan", "na", "n/a", "null", "none", "-nan", "+nan", "-nan(ind)", "nan(ind)", "#n/a", "nil"})
     if (is_word(text, word)) return true;
@@ -128,7 +129,8 @@ Written read_mantissa(std::string_view text, std::size_t i, char point) {
       fraction = true;
     } else if (is_digit(text[i])) {
       out.any = true;
-      // 25 digits leave room for the largest unit, an hour; further digits stand far below a nanosecond or far above 64 bits.
+      // 25 digits leave room for the largest unit, an hour; further digits stand far below a
+      // nanosecond or far above 64 bits.
       if (out.w < static_cast<Uint128>(1000000000000) * 1000000000000) {
         out.w = out.w * 10 + static_cast<unsigned>(text[i] - '0');
         out.q -= fraction;

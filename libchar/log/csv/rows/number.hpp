@@ -1,10 +1,13 @@
 #pragma once
-// Decimal text to the nearest double, and decimal time stamps to whole nanoseconds: the scalar tier of number parsing, one number
-// at a time. The other tier takes whole columns by AVX2 (vector_rows.hpp) and leaves to this one what it does not know.
+// Decimal text to the nearest double, and decimal time stamps to whole nanoseconds: the scalar tier
+// of number parsing, one number at a time. The other tier takes whole columns by AVX2
+// (vector_rows.hpp) and leaves to this one what it does not know.
 //
-// The reference is read_cell, by std::from_chars. In rows of nothing but numbers quick_number stands before it and returns nullptr
-// for what it leaves to read_cell: with std::from_chars in its place, files with decimal commas or with missing cells are read at half
-// the speed (docs/theory/speed.md). Both round to nearest, ties to even, so the bits are the same (csv_number_test).
+// The reference is read_cell, by std::from_chars. In rows of nothing but numbers quick_number
+// stands before it and returns nullptr for what it leaves to read_cell: with std::from_chars in its
+// place, files with decimal commas or with missing cells are read at half the speed
+// (docs/theory/speed.md). Both round to nearest, ties to even, so the bits are the same
+// (csv_number_test).
 
 #include <array>
 #include <bit>

@@ -115,7 +115,8 @@ class QuickRows {
   QuickRows(Filling& to, std::string_view text)
       : to_(to), end_(text.data() + text.size()), try_vector_(text.data()) {}
 
-  // As many rows as are plain numbers, from p on; at the first that is anything else it stops, having changed nothing but scratch.
+  // As many rows as are plain numbers, from p on; at the first that is anything else it stops,
+  // having changed nothing but scratch.
   const char* take(const char* p) {
     if (p >= try_vector_) {
       p = vector_rows(p);
@@ -231,8 +232,8 @@ class QuickRows {
     while (p < end_ && *p != to_.dialect.delimiter && *p != '\n' && *p != '\r' && *p != '"') ++p;
     if (p == end_ || *p == '"' || p - start > static_cast<std::ptrdiff_t>(kMaxField))
       return nullptr;
-    if (column == 0 &&
-        (p == start || *start == '#' || *start == '%' || *start == '/' || blank(*start)))
+    if (column == 0 && (p == start || *start == '#' || *start == '%' || *start == '/' ||
+                        *start == ';' || blank(*start)))
       return nullptr;
     std::size_t offset = 0;
     if (to != Plan::kSkip &&
@@ -258,6 +259,9 @@ class CarefulLines {
   const char* take(const char* start) {
     const char* stop = start;
     while (stop < end_ && *stop != '\n' && *stop != '\r') ++stop;
+    std::uint64_t more_lines = 0;
+    if (to_.dialect.lines.quotes && std::count(start, stop, '"') % 2 != 0)
+      stop = end_of_row(start, stop, more_lines);
     const char* after = stop;
     LineEnd kind = LineEnd::none;
     if (stop < end_) {
@@ -287,7 +291,7 @@ class CarefulLines {
       to_.out.blank.add(to_.line, 1);
       to_.out.account.blank_bytes += bytes;
       to_.list_lines();
-    } else if (is_comment(line)) {
+    } else if (is_comment(line, to_.dialect.lines.semicolon_comments)) {
       to_.out.comment.add(to_.line, 1);
       to_.out.account.comment_bytes += bytes;
       to_.list_lines();
@@ -305,7 +309,7 @@ class CarefulLines {
       to_.list_lines();
     } else if (!wanted(line)) {
       leave_out(bytes);
-    } else if (careful_row(line)) {
+    } else if (row_or_drop(line, bytes)) {
       to_.out.account.row_bytes += bytes;
       to_.note_line();
       ++to_.rows;
@@ -313,10 +317,21 @@ class CarefulLines {
       if (kind == LineEnd::none && line.back() != '"' && line.back() != to_.dialect.delimiter)
         to_.out.unended = Spot{to_.line, line.size() + 1};
     }
+    to_.line += more_lines;
     return after;
   }
 
  private:
+  // Behind quoted cells that hold line ends.
+  const char* end_of_row(const char* start, const char* stop, std::uint64_t& more_lines) {
+    const std::string_view rest(start, static_cast<std::size_t>(end_ - start));
+    const char* const end = start + row_end(rest, 0, to_.dialect.delimiter);
+    more_lines = static_cast<std::uint64_t>(
+        std::count(stop, end, to_.dialect.line_end == LineEnd::cr ? '\r' : '\n'));
+    if (more_lines > 0) to_.list_lines();
+    return end;
+  }
+
   void fail(
       std::string code, std::string what, std::string got, std::string hint, std::size_t column) {
     to_.out.problem = RowProblem{
@@ -360,7 +375,8 @@ class CarefulLines {
     while (pad(i)) ++i;
     span.start = i;
     if (i < line.size() && line[i] == '"') {
-      const std::size_t close = line.find('"', i + 1);
+      std::size_t close = line.find('"', i + 1);
+      while (close < line.size() - 1 && line[close + 1] == '"') close = line.find('"', close + 2);
       if (close == std::string_view::npos) {
         fail("E0306",
              "a quote is opened here and not closed in this line",
@@ -410,6 +426,49 @@ class CarefulLines {
     ++to_.out.filtered;
     to_.out.account.filtered_bytes += bytes;
     to_.list_lines();
+  }
+
+  // A row that cannot be read is dropped where that is asked for; without stamps its instant stays,
+  // as one of missing samples.
+  bool row_or_drop(std::string_view line, std::uint64_t bytes) {
+    if (!to_.plan.drop_bad_rows) {
+      if (careful_row(line)) return true;
+      if (std::string& hint = to_.out.problem->problem.hint; hint.empty())
+        hint = "`drop_bad_rows` leaves out and counts rows that cannot be read";
+      return false;
+    }
+    RowNotes before = to_.out;
+    if (careful_row(line)) return true;
+    const std::uint64_t at = to_.out.problem->spot.column;
+    static_cast<RowNotes&>(to_.out) = std::move(before);
+    to_.out.problem.reset();
+    to_.out.groups.resize(std::min(to_.out.groups.size(), to_.rows));
+    to_.out.bad.add(to_.line, at);
+    const bool instant = to_.dialect.time.column < 0 && to_.out.groups.empty() && has_number(line);
+    if (instant)
+      miss_row();
+    else
+      to_.out.account.filtered_bytes += bytes;
+    if (!instant) to_.list_lines();
+    return instant;
+  }
+
+  bool has_number(std::string_view line) const {
+    const auto fields = split(line, to_.dialect.delimiter);
+    return std::any_of(fields.begin(), fields.end(), [&](const Field& field) {
+      return read_cell(field.text, to_.dialect.decimal).kind == Cell::value;
+    });
+  }
+
+  void miss_row() {
+    Account& account = to_.out.account;
+    for (std::size_t c = 0; c < to_.plan.channels; ++c) {
+      to_.columns[c][to_.rows] = kMissing;
+      ++to_.out.missing_per_channel[c];
+    }
+    account.cells += to_.plan.target.size();
+    account.missing += to_.plan.channels;
+    account.unread += to_.plan.target.size() - to_.plan.channels;
   }
 
   // Does the row have the values that are asked for? Notes its group.
@@ -622,7 +681,7 @@ class CarefulLines {
         fail("E0311",
              cell.reason,
              std::string(text),
-             bad_hint(text),
+             bad_hint(text, channel),
              span.from == span.to || cell.offset == 0 ? span.start : span.from + cell.offset);
         return false;
     }
@@ -632,16 +691,21 @@ class CarefulLines {
     return true;
   }
 
-  std::string bad_hint(std::string_view text) const {
+  std::string bad_hint(std::string_view text, std::size_t channel) const {
     if (to_.dialect.decimal == '.' && read_cell(text, ',').kind == Cell::value)
       return "`decimal` comma, if ',' is the decimal mark";
     if (to_.dialect.decimal == ',' && read_cell(text, '.').kind == Cell::value)
       return "`decimal` point, if '.' is the decimal mark";
     const bool word =
         !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
-    return word ? "`channels` reads only the columns named there; `skip_rows`, if the table starts "
-                  "later"
-                : "";
+    if (!word) return "";
+    const auto column =
+        std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
+    return fmt::format(
+        "`channels` '!{}' leaves the column out, `drop_bad_rows` the row; `skip_rows`, if the "
+        "table "
+        "starts later",
+        to_.dialect.columns[static_cast<std::size_t>(column - to_.plan.target.begin())].name);
   }
 
   Filling& to_;

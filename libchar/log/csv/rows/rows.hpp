@@ -40,7 +40,7 @@ struct RowProblem {
 /// Everything goes somewhere: bytes = row + blank + comment + repeated header; cells = values +
 /// missing + rejected + unread.
 struct Account {
-  std::uint64_t filtered_bytes = 0;  ///< of rows that were not asked for
+  std::uint64_t filtered_bytes = 0;  ///< of rows that were not asked for, or dropped
   std::uint64_t bytes = 0, row_bytes = 0, blank_bytes = 0, comment_bytes = 0, header_bytes = 0;
   std::uint64_t cells = 0, values = 0, missing = 0, rejected = 0, unread = 0, stamps = 0;
   void add(const Account& other);
@@ -57,11 +57,21 @@ struct Plan {
   std::size_t channels = 0;
   bool overflow_as_missing = false;
   bool skip_repeated_header = false;
+  bool drop_bad_rows = false;
   std::string file;
   static constexpr int kSkip = -1, kTime = -2, kMoreTime = -3;
 };
 
-struct ParsedChunk {
+/// What is noted of rows as they are read, and taken back where one of them is dropped.
+struct RowNotes {
+  Tally infinite, overflow, too_small, missing;
+  std::vector<std::uint64_t> missing_per_channel;
+  std::vector<std::uint32_t> fractional;  ///< per channel: some value was not written as an integer
+  std::uint64_t inexact_integers = 0;
+  Account account;
+};
+
+struct ParsedChunk : RowNotes {
   RowBlock rows;
   std::vector<std::uint32_t> groups;  ///< of each row, where a column makes groups
   std::uint64_t filtered = 0;         ///< rows that were not asked for
@@ -69,11 +79,7 @@ struct ParsedChunk {
   std::optional<RowProblem> problem;
   std::optional<Spot>
       unended;  ///< end of a last row that has no line end and may have been cut in its last cell
-  Tally blank, comment, repeated, infinite, mixed_end, overflow, too_small, missing;
-  std::vector<std::uint64_t> missing_per_channel;
-  std::vector<std::uint32_t> fractional;  ///< per channel: some value was not written as an integer
-  std::uint64_t inexact_integers = 0;
-  Account account;
+  Tally blank, comment, repeated, mixed_end, bad;
 };
 
 /// Parses the lines in `text` (whole lines; the last may lack its line end at the end of the file).

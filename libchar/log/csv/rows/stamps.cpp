@@ -146,8 +146,12 @@ void choose_date_order(const StampStudy& study,
   if (texts.empty()) return;
   DateStyle style = date_style(texts, study.style.decimal == ',');
   if (style.ambiguous && options.date_order == "auto") {
-    const std::vector<std::string> all = study.whole_head(dates);
-    style = date_style({all.begin(), all.end()}, study.style.decimal == ',');
+    const std::vector<Cells> all = study.whole_head(dates);
+    texts.assign(all.size(), "");
+    std::transform(all.begin(), all.end(), texts.begin(), [](const Cells& cell) {
+      return std::string_view(cell[0].text);
+    });
+    style = date_style(texts, study.style.decimal == ',');
   }
   if (options.date_order != "auto")
     style = {options.date_order == "day" ? DateOrder::day_first : DateOrder::month_first, false};

@@ -15,7 +15,7 @@ struct StampStudy {
   NumberStyle style;
   std::optional<double> stated_rate_hz;
   std::optional<double> stated_tick_s;
-  std::function<std::vector<std::string>(std::size_t column)>
+  std::function<std::vector<Cells>(std::size_t column)>
       whole_head;  ///< the cells of a column as far as the head goes: what the first rows leave open
 };
 

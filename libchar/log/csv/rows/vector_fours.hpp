@@ -120,7 +120,8 @@ LIBCHAR_AVX2_INLINE inline bool four_fields(const Column& column,
   return true;
 }
 
-/// Whole fours of rows, as long as all fields are regular. Row 0 must not be among the rows. Returns the first row that is left.
+/// Whole fours of rows, as long as all fields are regular. Row 0 must not be among the rows.
+/// Returns the first row that is left.
 template <bool kLast>
 LIBCHAR_AVX2_INLINE inline std::size_t take_fours(const Column& column,
                                                   std::size_t row,

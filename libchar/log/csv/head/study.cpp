@@ -1,0 +1,124 @@
+#include "libchar/log/csv/head/study.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <utility>
+
+#include "libchar/core/error.hpp"
+
+namespace libchar::csv {
+namespace {
+
+// LabVIEW names a column of comments that its rows do not have; R names no column of row numbers,
+// which they do; names with commas in them are known by the blanks behind those.
+void fit_names(const Study& study, std::string_view text, Cells& fields) {
+  const std::size_t columns = study.columns;
+  if (fields.size() == columns + 1 && fields.back().text == "Comment") fields.pop_back();
+  if (fields.size() + 1 == columns && study.sample.size() > 1 &&
+      std::all_of(fields.begin(), fields.end(), [](const Field& f) { return f.quoted; }) &&
+      cells_in(study.dialect, study.sample[1].text)[0].quoted)
+    fields.insert(fields.begin(), Field{"", 0, true});
+  const auto joined = [&](const Field& field) {
+    return field.offset > 0 && text[field.offset - 1] == ' ';
+  };
+  const auto count = std::count_if(fields.begin(), fields.end(), joined);
+  if (study.dialect.delimiter != ',' || fields.size() < columns ||
+      columns + static_cast<std::size_t>(count) != fields.size())
+    return;
+  Cells out;
+  for (Field& field : fields)
+    if (joined(field))
+      out.back().text += ", " + field.text;
+    else
+      out.push_back(std::move(field));
+  fields = std::move(out);
+}
+
+void add_cells(const Dialect& dialect,
+               std::string_view text,
+               bool whole,
+               std::size_t column,
+               std::size_t most,
+               std::vector<Cells>& out) {
+  for (std::size_t offset = 0; offset < text.size() && out.size() < most;) {
+    const Line line = line_at(text, offset, 0);
+    offset = line.after;
+    if (offset == text.size() && !whole) return;  // may be cut
+    if (is_comment(line.text, dialect.lines.semicolon_comments)) continue;
+    auto cell = cell_at(line.text, column, dialect.delimiter);
+    if (cell && read_cell(cell->text, '.').kind != Cell::missing) out.push_back({std::move(*cell)});
+  }
+}
+
+}  // namespace
+
+void refuse(const Study& study,
+            const Line& line,
+            std::size_t column,
+            std::string code,
+            std::string what,
+            std::string got,
+            std::string hint) {
+  throw Error({ErrorKind::input,
+               std::move(code),
+               at(study.info.file, line.number, column + 1, line.offset + column),
+               std::move(what),
+               std::move(got),
+               std::move(hint)});
+}
+
+Cells cells_in(const Dialect& dialect, std::string_view text, bool* open) {
+  std::size_t after = 0;
+  const auto lead = dialect.lead.empty() ? std::nullopt : lead_of(text, dialect.lead, after);
+  Cells out = split(text.substr(after), dialect.delimiter, open);
+  for (Field& field : out) field.offset += after;
+  if (lead) out.insert(out.begin(), *lead);
+  return out;
+}
+
+Cells table_cells(const Study& study, std::string_view text) {
+  Cells out = cells_in(study.dialect, text);
+  const bool ends_empty =
+      study.dialect.delimiter != ' ' && out.back().text.empty() && !out.back().quoted;
+  if (ends_empty && out.size() == study.columns + 1) out.pop_back();
+  if (out.size() != study.columns) fit_names(study, text, out);
+  return out;
+}
+
+std::vector<Cells> filled_cells(const Study& study, std::size_t column, std::size_t most) {
+  std::vector<Cells> out;
+  const std::string_view body =
+      study.head.substr(std::min(study.dialect.data_offset, study.head.size()));
+  if (study.dialect.lead.empty()) add_cells(study.dialect, body, study.whole, column, most, out);
+  return out;
+}
+
+std::vector<Cells> cells_further_on(const Study& study, std::size_t column) {
+  constexpr std::size_t kPlaces = 64, kLook = 4096;
+  std::vector<Cells> out;
+  std::error_code none;
+  if (study.whole || !std::filesystem::is_regular_file(study.info.file, none)) return out;
+  std::ifstream file(study.info.file, std::ios::binary);
+  const std::size_t size = std::filesystem::file_size(study.info.file, none);
+  std::string text(kLook, '\0');
+  const auto look_at = [&](std::size_t place) {
+    file.seekg(static_cast<std::streamoff>(place));
+    return static_cast<bool>(file.read(text.data(), static_cast<std::streamsize>(kLook)));
+  };
+  if (!look_at(0) || !study.head.starts_with(text)) return out;  // compressed, or UTF-16
+  for (std::size_t k = 1; k <= kPlaces; ++k) {
+    if (!look_at(size / kPlaces * k - std::min(kLook, size / kPlaces))) break;
+    const std::size_t row = std::min(text.find('\n'), kLook - 1) + 1;
+    add_cells(study.dialect,
+              std::string_view(text).substr(row),
+              false,
+              column,
+              std::numeric_limits<std::size_t>::max(),
+              out);
+  }
+  return out;
+}
+
+}  // namespace libchar::csv
