@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "libchar/characterize/detail/channel_stages.hpp"
+#include "libchar/characterize/detail/longest_segment.hpp"
 #include "libchar/characterize/detail/still.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -200,6 +201,8 @@ Characterization characterize(const std::string& path,
       if (std::isfinite(stretch->to_s)) chosen.to_s = stretch->to_s;
     }
   }
+  if (options.wanted.spectrum)
+    refuse_longer_segment(path, chosen, options.spectrum.segment, options.segment_s, progress);
   Source source;
   source.read = [&](BlockSink& sink) { return read_log(path, chosen, sink, progress); };
   if (!read_once(path))

@@ -28,6 +28,7 @@
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/csv/unpacker.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/detail/unused_options.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/reading_fields.hpp"
 #include "libchar/log/time/grid.hpp"
@@ -109,6 +110,12 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
                "",
                fmt::format("`format` {}, or write FILE.json (docs: raw binary)",
                            fmt::join(words.begin() + 1, words.end(), "|"))});
+}
+
+std::unique_ptr<RowSource> open_log(const std::string& path, const ReadOptions& options) {
+  const Format& format = format_of(path, options);
+  refuse_unused_options(format.about, options);
+  return open_rows(format, path, options);
 }
 
 // What the user knows of the channels and the log does not say.
@@ -301,7 +308,7 @@ struct Watch final : BlockSink {
 
 LogInfo read_log_head(const std::string& log, const ReadOptions& options) {
   const std::string path = named_log_file(log);
-  LogInfo info = open_rows(format_of(path, options), path, options)->info();
+  LogInfo info = open_log(path, options)->info();
   name_channels(info.channels, options);
   scale_channels(info.channels, options, nullptr);
   warn_of_unused(info.channels, options, info.warnings);
@@ -444,7 +451,7 @@ LogInfo read_rows(const std::string& path,
   ReadOptions whole = options;
   whole.from_s = whole.to_s = std::nullopt;
   whole.hash = false;
-  const auto source = open_rows(format_of(path, whole), path, whole);
+  const auto source = open_log(path, whole);
   std::string why_not = why_no_rows(source->info());
   if (why_not.empty() && !source->restrict_rows(first, end, channels))
     why_not = fmt::format("its rows have no fixed places ({})", source->info().format);
@@ -479,7 +486,7 @@ LogInfo read_log(const std::string& log,
                  Progress& progress) {
   check_rate_option(options);
   const std::string path = named_log_file(log);
-  const auto source = open_rows(format_of(path, options), path, options);
+  const auto source = open_log(path, options);
   Findings warnings;
   Watch watch(sink, options);
   TimeGrid grid(*source, options, watch, warnings);
@@ -547,7 +554,7 @@ StampedRows read_stamped_rows(const std::string& log,
                               const ReadOptions& options,
                               Progress& progress) {
   const std::string path = named_log_file(log);
-  const auto source = open_rows(format_of(path, options), path, options);
+  const auto source = open_log(path, options);
   StampedRows out;
   Findings warnings;
   RowBlock block;

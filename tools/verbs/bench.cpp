@@ -362,6 +362,8 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
       .value_name("SWEEP");
   add_design_options(options, *verb);
   add_comparison_options(options, *verb);
+  options.only(
+      "with --against", [verb = verb.get()] { return !verb->against.empty(); }, {"--tolerance"});
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print bench.json to stdout instead of the tables");
   add_reading_options(options, session, verb->inputs.reading);

@@ -349,6 +349,9 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
                 "compare the LOGs as devices side by side, as fleet merge does: mean and spread of "
                 "each term, outliers, overlaid curves (index.html, lot.json, coefficients.csv)")
       .excludes(pool);
+  options.only("with --verify or --pool",
+               [verb = verb.get()] { return verb->verify || verb->pool; },
+               {"--seed"});
   add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_characterize(session, *verb); };
 }

@@ -85,12 +85,13 @@ std::function<void()> fuse_options(VerbOptions& options, Session& session) {
                  "channel of a sensor where it is not that of the replay, SENSOR=CHANNEL")
       .separated_by_commas()
       .one_value_each()
-      .value_name("SENSOR=CHANNEL,…");
-  options.add_duration("--fault-free",
-                       verb->options.fault_free_s,
-                       "so long no sensor fails at the start of this log (default: not known, but "
-                       "of the log of the replay)");
-  add_writing_options(options, verb->writing, "t[s] or t[ns]");
+      .value_name("SENSOR=CHANNEL,…")
+      .once_each();
+  options.add_instant("--fault-free",
+                      verb->options.fault_free_s,
+                      "so long no sensor fails at the start of this log (default: not known, but "
+                      "of the log of the replay)");
+  add_writing_options(options, verb->writing, "t[s] or t[ns]", verb->output);
   options.add_flag("--force", verb->writing.options.overwrite, "overwrite an existing file");
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   add_reading_options(options, session, verb->options.reading);

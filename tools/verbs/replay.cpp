@@ -253,6 +253,17 @@ std::vector<std::string> algorithm_names() {
   return names;
 }
 
+/// A plan writes nothing, and a scene says nothing of how it is replayed.
+void add_only(VerbOptions& options, const ReplayVerb& verb) {
+  const auto runs = [&verb] { return !verb.folder.empty() && !verb.explain; };
+  options.only(
+      "without --explain", [&verb] { return !verb.explain; }, {"--output", "--write-scene"});
+  options.only("with -o", runs, {"--estimates", "--no-timing", "--window", "--no-allan"});
+  options.only("with -o or --explain",
+               [&verb] { return !verb.folder.empty() || verb.explain; },
+               {"--budget", "--no-skip"});
+}
+
 std::function<void()> replay_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReplayVerb>();
   add_replay_source(options, session, verb->source);
@@ -263,10 +274,12 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
                  verb->algorithms,
                  "run these only (default: the scene's, else all that it has the data for)")
       .separated_by_commas()
+      .once_each()
       .value_name("NAME,…")
       .known_words(algorithm_names());
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
-      .value_name("SETTING");
+      .value_name("SETTING")
+      .once_each();
   options
       .add_texts("--sweep",
                  verb->sweeps,
@@ -277,18 +290,19 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   options.add_duration("--window",
                        verb->window_s,
                        "length of the window RMS (default: a fiftieth of the evaluation)");
-  options.add_duration("--budget",
-                       verb->budget_s,
-                       "processor time that leave-one-out of one algorithm may take, counted by "
-                       "its declared cost; beyond, "
-                       "it runs on stretches or not at all (default: 10 s)");
+  options.add_instant("--budget",
+                      verb->budget_s,
+                      "processor time that leave-one-out of one algorithm may take, counted by "
+                      "its declared cost; beyond, "
+                      "it runs on stretches or not at all (default: 10 s)");
   options.add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
   options
       .add_text("--estimates",
                 verb->estimates,
                 "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
       .value_name("FORMAT");
-  options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options");
+  options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options")
+      .alone();
   options.add_flag("--explain",
                    verb->explain,
                    "print the plan: what would be read, learnt, run, skipped and why");
@@ -307,6 +321,7 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the table");
+  add_only(options, *verb);
   return [&session, verb] { run_replay(session, *verb); };
 }
 

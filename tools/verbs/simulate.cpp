@@ -284,13 +284,15 @@ std::function<void()> simulate_options(VerbOptions& options, Session& session) {
   add_length_options(options, *verb);
   add_input_options(options, *verb);
   options.add_flag("--no-truth", verb->no_truth, "leave out the columns of the truth");
-  options
-      .add_text("--scene",
-                verb->scene_path,
-                "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
-      .value_name("FILE");
-  options.add_flag("--no-scene", verb->no_scene, "write no scene");
-  add_writing_options(options, verb->writing, "t[s]");
+  const Option scene =
+      options
+          .add_text(
+              "--scene",
+              verb->scene_path,
+              "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
+          .value_name("FILE");
+  options.add_flag("--no-scene", verb->no_scene, "write no scene").excludes(scene);
+  add_writing_options(options, verb->writing, "t[s]", verb->output);
   options.add_flag(
       "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
   options.add_flag("--force", verb->writing.options.overwrite, "overwrite existing files");

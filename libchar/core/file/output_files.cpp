@@ -178,6 +178,41 @@ void commit_together(const std::vector<WholeFile*>& files) {
   }
 }
 
+void refuse_one_name(const std::vector<std::string>& paths) {
+  namespace fs = std::filesystem;
+  const auto place = [](const std::string& path) {
+    std::error_code ignored;
+    return fs::weakly_canonical(fs::absolute(path), ignored);
+  };
+  for (const std::string& a : paths)
+    for (const std::string& b : paths) {
+      if (&a == &b || a == "-" || b == "-") continue;
+      const fs::path inner = place(a), outer = place(b);
+      const auto apart = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
+      if (apart.first != outer.end() || writes_through(b)) continue;
+      throw Error({ErrorKind::output,
+                   "E0505",
+                   a,
+                   inner == outer ? "two results would be this one file"
+                                  : "would lie in a folder that is another result's file",
+                   b,
+                   "give each a name of its own"});
+    }
+}
+
+void write_together(const std::vector<OutputFile>& outputs, bool overwrite) {
+  std::vector<std::string> paths;
+  std::vector<WholeFile> files;
+  for (const OutputFile& output : outputs)
+    if (output.path != "-") paths.push_back(output.path);
+  refuse_one_name(paths);
+  for (const OutputFile& output : outputs)
+    if (output.path != "-") files.emplace_back(output.path, overwrite).write(output.text);
+  std::vector<WholeFile*> all;
+  for (WholeFile& file : files) all.push_back(&file);
+  if (!all.empty()) commit_together(all);
+}
+
 WrittenFile as_written(const OutputFile& file) {
   Sha256 hash;
   hash.update(file.text);

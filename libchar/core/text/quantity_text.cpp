@@ -110,6 +110,12 @@ double parse_duration_s(std::string_view text) {
   return value;
 }
 
+double parse_length_s(std::string_view text) {
+  const double value = parse_duration_s(text);
+  if (!(value > 0)) refuse(text, "a duration above zero such as 90s, 250ms, 5min, 2h or 1d");
+  return value;
+}
+
 double parse_rate_hz(std::string_view text) {
   const std::string expected =
       "a sampling rate above zero such as 200Hz, 1.5kHz or 1/300, or an interval such as 5min (a "

@@ -2,6 +2,7 @@
 // The last digits of the maximum, and its covariance, by Ceres.
 
 #include <ceres/covariance.h>
+#include <ceres/problem.h>
 #include <ceres/solver.h>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
@@ -16,6 +17,9 @@ ceres::Solver::Options exact_solver_options(int most_iterations);
 
 /// Of a covariance at the solution, with directions that the data do not determine left out.
 ceres::Covariance::Options exact_covariance_options();
+
+/// Can the covariance be asked for at all: has the solver a solution, and the problem a cost where it stands?
+bool has_covariance(const ceres::Solver::Summary& summary, ceres::Problem& problem);
 
 struct Polished {
   ModelPoint at;
