@@ -205,7 +205,8 @@ void refuse_without_effect(const CLI::App& verb, const OptionNotes& notes) {
   }
 }
 
-// A variable of the shell that is not set is no value: where a name, a folder or a limit belongs it would switch off what was asked for, and
+// A variable of the shell that is not set is no value: where a name, a folder or a limit belongs it would
+// switch off what was asked for, and
 // the parser would give "--limits=" the next word.
 void refuse_empty_words(const CLI::App& app, const std::vector<std::string>& command) {
   for (std::size_t i = 1; i < command.size(); ++i) {
@@ -214,6 +215,8 @@ void refuse_empty_words(const CLI::App& app, const std::vector<std::string>& com
     const bool cut = word.starts_with("--") && word.size() > 3 && word.find('=') == word.size() - 1;
     if (!word.empty() && !cut) continue;
     const bool of_option = !cut && i > 1 && before.starts_with('-') && before.size() > 1;
+    if (const std::string& flag = cut ? word : before; flag == "-o" || flag.starts_with("--output"))
+      throw Error({ErrorKind::output, "E0502", "--output", "an output file needs a name", "", ""});
     throw Error({ErrorKind::usage,
                  "E0207",
                  cut         ? word.substr(0, word.size() - 1)
@@ -282,6 +285,11 @@ Option& Option::only(const std::string& where, std::function<bool()> works) {
 
 Option& Option::alone() {
   (*notes_)[option_].alone = true;
+  return *this;
+}
+
+Option& Option::writes() {
+  (*notes_)[option_].writes = true;
   return *this;
 }
 
@@ -367,7 +375,7 @@ Option VerbOptions::add_duration(const std::string& names,
                                  std::optional<double>& seconds,
                                  const std::string& help) {
   const auto read = [&seconds](const std::string& text) {
-    seconds = libchar::parse_length_s(text);
+    seconds = libchar::parse_duration_s(text, true);
   };
   return add_parsed(names, "TIME", read, help);
 }
@@ -508,6 +516,7 @@ void CommandLine::add(const VerbEntry& entry, Session& session) {
           "auto)")
       .known_words(libchar::words_of<Colour>());
   sub->final_callback([this, sub, run = entry.add_options(options, session)] {
+    if (only_parses_) return;
     refuse_without_effect(*sub, notes_);
     run();
   });
@@ -535,20 +544,49 @@ ProgramUsage CommandLine::usage() const {
   return usage;
 }
 
+void CommandLine::parse(const std::vector<std::string>& argv) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
+  const std::vector<std::string> command = with_verb(*app_, with_joined_verb(argv, verbs));
+  check_verb(*app_, command);
+  refuse_empty_words(*app_, command);
+  std::vector<std::string> last_first(command.rbegin(), command.rend() - 1);
+  app_->parse(last_first);
+}
+
+std::vector<ParsedWord> CommandLine::parsed(const std::vector<std::string>& argv) {
+  only_parses_ = true;
+  const auto answer = run(argv);
+  only_parses_ = false;
+  std::vector<ParsedWord> out;
+  if (answer) return out;  // --help
+  for (const CLI::Option* option : chosen(*app_).get_options()) {
+    const OptionUsage usage = usage_of_option(*option, notes_);
+    const auto note = notes_.find(option);
+    const bool writes = note != notes_.end() && note->second.writes;
+    const std::size_t equals = usage.name.find('=');
+    const bool names_file = kind_of_name(usage.name.substr(equals + 1)) != ValueKind::text;
+    for (const std::string& value : option->results()) {
+      const bool alone = option->get_expected_max() == 0 && value == "true";
+      const std::string after =
+          equals == std::string::npos ? value : value.substr(value.find('=') + 1);
+      out.push_back({usage.flags.empty() ? "" : usage.flags.back(),
+                     alone ? "" : value,
+                     names_file && !usage.name.empty() ? after : "",
+                     writes});
+    }
+  }
+  return out;
+}
+
 std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv) {
   const auto refuse = [&](const char* code, const std::string& what) {
     const std::string name = full_name(*app_);
     throw Error({ErrorKind::usage, code, name, what, "", name + " --help"});
   };
   try {
-    std::vector<std::string> verbs;
-    for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; }))
-      verbs.push_back(verb->get_name());
-    const std::vector<std::string> command = with_verb(*app_, with_joined_verb(argv, verbs));
-    check_verb(*app_, command);
-    refuse_empty_words(*app_, command);
-    std::vector<std::string> last_first(command.rbegin(), command.rend() - 1);
-    app_->parse(last_first);
+    parse(argv);
   } catch (const CLI::Success& answer) {  // --help, --version
     std::ostringstream out, err;
     app_->exit(answer, out, err);

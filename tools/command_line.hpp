@@ -32,6 +32,7 @@ struct OptionNote {
   std::string only;                ///< where it has an effect ("with --curve"), "" everywhere
   std::function<bool()> works;     ///< has it one in this command? asked where it is given
   bool alone = false;              ///< nothing else is asked where it is given, but how to print it
+  bool writes = false;             ///< where results go, or what may be overwritten
   bool once_each = false;          ///< of several values none is for what another is for
 };
 using OptionNotes = std::map<const CLI::Option*, OptionNote>;
@@ -52,10 +53,13 @@ class Option {
   Option& excludes(const Option& other);
   /// Values that are offered by the completion and the man page; others are not refused.
   Option& known_words(std::vector<std::string> words);
-  /// It has an effect only there ("with --curve"): the help says so, and where it is given and `works` says no, it is refused.
+  /// It has an effect only there ("with --curve"): the help says so, and where it is given and `works` says no,
+  /// it is refused.
   Option& only(const std::string& where, std::function<bool()> works);
   /// It asks for something else than the verb does: but --json and how to print, no other option goes with it.
   Option& alone();
+  /// It says where results go, or what may be overwritten.
+  Option& writes();
   /// Lists: of "a=1,a=2" and "a,a" the second is refused.
   Option& once_each();
 
@@ -153,6 +157,14 @@ class VerbOptions {
 std::vector<std::string> with_joined_verb(const std::vector<std::string>& command,
                                           const std::vector<std::string>& verbs);
 
+/// A word of a command as its verb understands it.
+struct ParsedWord {
+  std::string flag;   ///< "--output"; "" where it stands by its place
+  std::string value;  ///< one of several; "" of a flag
+  std::string file;   ///< the file or folder that it names, "" where it names none
+  bool writes = false;
+};
+
 /// A program with verbs.
 class CommandLine {
  public:
@@ -173,12 +185,17 @@ class CommandLine {
   /// (--version), or nothing. Throws Error(usage) for what cannot be understood, and whatever the
   /// verb throws.
   std::optional<std::string> run(const std::vector<std::string>& argv);
+  /// The same words as the verb's own options take them, and nothing is run. Throws as `run`.
+  std::vector<ParsedWord> parsed(const std::vector<std::string>& argv);
 
  private:
+  void parse(const std::vector<std::string>& argv);
+
   VerbUsage usage_of(const CLI::App& verb) const;
 
   std::unique_ptr<CLI::App> app_;
   OptionNotes notes_;
+  bool only_parses_ = false;
   std::map<std::string, std::vector<Example>> examples_;  ///< of each verb
 };
 

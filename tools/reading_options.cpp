@@ -41,7 +41,7 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
           "--interval",
           "TIME",
           [&options](const std::string& text) {
-            options.rate_hz = 1 / libchar::parse_length_s(text);
+            options.rate_hz = 1 / libchar::parse_duration_s(text, true);
           },
           "the same as the time from sample to sample (s, or 5min…)")
       .group("Reading");

@@ -7,7 +7,8 @@ namespace sensorchar {
 
 namespace {
 
-/// Does the log that goes to `output` become a table with a column of stamps? Where its name is not known yet: nothing is refused.
+/// Does the log that goes to `output` become a table with a column of stamps? Where its name is not known yet:
+/// nothing is refused.
 std::optional<bool> becomes_table(const WritingOptions& writing, const std::string& output) {
   if (output.empty()) return std::nullopt;
   if (output == "-" && writing.options.format == "auto") return true;

@@ -14,6 +14,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
+#include "libchar/log/channel_names.hpp"
 #include "libchar/log/gravity.hpp"
 
 namespace libchar {
@@ -176,6 +177,20 @@ RecordingView between(const RecordingView& recording, const Stretch& stretch) {
 }
 
 }  // namespace
+
+void check_characterization(const std::string& path, const CharacterizeOptions& options) {
+  check_still(options.still, options.reading);
+  CharacterizeOptions asked = options;
+  asked.reading = with_temperature(options);
+  LogInfo head = read_log_head(path, asked.reading);
+  head.bytes = 0;                                     // nothing is kept of it
+  if (!(head.time.rate_hz > 0)) asked.segment_s = 0;  // a table tells its rate when it is read
+  CharacterizeWorkspace workspace;
+  ChannelStages(asked, workspace, 0, false).begin(head);
+  if (asked.wanted.spectrum)
+    refuse_longer_segment(
+        path, asked.reading, asked.spectrum.segment, asked.segment_s, no_progress());
+}
 
 Characterization characterize(const std::string& path,
                               const CharacterizeOptions& options,

@@ -304,9 +304,24 @@ struct Watch final : BlockSink {
   std::vector<std::vector<double>> scaled;
 };
 
+void check_numbers(const ReadOptions& options) {
+  if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
+    throw Error({ErrorKind::usage,
+                 "E0201",
+                 "`rate_hz`",
+                 "the rate must be a positive number of hertz, from 1e-9 to 1e12",
+                 shortest(*options.rate_hz)});
+  if (options.from_s && options.to_s && !(*options.from_s < *options.to_s))
+    throw Error({ErrorKind::usage,
+                 "E0201",
+                 "`to_s`",
+                 "the window is empty: `to_s` does not lie after `from_s`"});
+}
+
 }  // namespace
 
 LogInfo read_log_head(const std::string& log, const ReadOptions& options) {
+  check_numbers(options);
   const std::string path = named_log_file(log);
   LogInfo info = open_log(path, options)->info();
   name_channels(info.channels, options);
@@ -334,15 +349,6 @@ LogInfo log_listing(const std::string& log, const ReadOptions& options) {
 }
 
 namespace {
-
-void check_rate_option(const ReadOptions& options) {
-  if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "`rate_hz`",
-                 "the rate must be a positive number of hertz, from 1e-9 to 1e12",
-                 shortest(*options.rate_hz)});
-}
 
 /// What the grid of instants knows better than the head of the log.
 void take_grid(const LogInfo& known, LogInfo& info) {
@@ -447,7 +453,7 @@ LogInfo read_rows(const std::string& path,
                   std::uint64_t end,
                   BlockSink& sink,
                   ChannelRange channels) {
-  check_rate_option(options);
+  check_numbers(options);
   ReadOptions whole = options;
   whole.from_s = whole.to_s = std::nullopt;
   whole.hash = false;
@@ -484,7 +490,7 @@ LogInfo read_log(const std::string& log,
                  const ReadOptions& options,
                  BlockSink& sink,
                  Progress& progress) {
-  check_rate_option(options);
+  check_numbers(options);
   const std::string path = named_log_file(log);
   const auto source = open_log(path, options);
   Findings warnings;

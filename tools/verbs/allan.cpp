@@ -34,8 +34,8 @@ struct AllanVerb {
 DynamicTimes read_dynamic(const std::string& text) {
   const std::size_t comma = text.find(',');
   DynamicTimes times;
-  times.window_s = parse_length_s(text.substr(0, comma));
-  if (comma != std::string::npos) times.step_s = parse_length_s(text.substr(comma + 1));
+  times.window_s = parse_duration_s(text.substr(0, comma), true);
+  if (comma != std::string::npos) times.step_s = parse_duration_s(text.substr(comma + 1), true);
   return times;
 }
 
@@ -132,6 +132,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
     text = allan_csv(channels, curves);
   }
   if (verb.output.empty()) return print(text);
+  refuse_strict(session);
   write_whole_file(verb.output, text, verb.force);
 }
 

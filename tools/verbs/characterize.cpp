@@ -131,6 +131,7 @@ void run_one_by_one(Session& session,
   for (const std::string& log : verb.logs) {
     const Characterization result = characterized(session, verb, options, limits, log, outcome);
     const CharacterizationView view = characterization_view(result);
+    refuse_strict(session);
     const fs::path folder = folder_for(verb, log, taken);
     const std::vector<OutputFile> outputs = report_files(view, folder);
     const auto removed = write_outputs(outputs, folder, inputs_of(verb), verb.force);
@@ -188,6 +189,7 @@ std::vector<Characterization> all_characterized(Session& session,
   std::vector<Characterization> results;
   for (const std::string& log : verb.logs)
     results.push_back(characterized(session, verb, options, limits, log, outcome));
+  refuse_strict(session);
   return results;
 }
 
@@ -317,8 +319,9 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
           verb->folder,
           "folder for the results (made when absent; with several logs one folder each inside)")
       .value_name("DIR")
+      .writes()
       .required();
-  options.add_flag("--force", verb->force, "overwrite results of an earlier run");
+  options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
   options.add_flag("--no-timing",
                    verb->no_timing,

@@ -99,6 +99,12 @@ void foresee_models(const FitVerb& verb) {
     for (const Channel& channel : read_log_head(verb.input, verb.analysis.options.reading).channels)
       models.push_back(model_path(verb, channel, taken));
   }
+  if (!verb.output.empty()) {
+    std::vector<std::string> all = models;
+    all.push_back(verb.output);
+    all.push_back((std::filesystem::path(verb.models) / "any.sensor.yaml").string());
+    refuse_one_name(all);
+  }
   foresee_outputs(models, verb.models, {verb.input}, verb.force);
 }
 
@@ -120,6 +126,7 @@ void run_fit(Session& session, const FitVerb& verb) {
                  log.time.rate_hz > 0
                      ? ""
                      : "the sampling rate is not known: a log without time stamps needs --rate"});
+  if (!verb.output.empty() || !verb.models.empty()) refuse_strict(session);
   std::string text;
   if (verb.json) {
     Json document = document_head(session, "noise-fit", {&log});

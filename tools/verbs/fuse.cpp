@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/report/replay/fuse_report.hpp"
 #include "reading_options.hpp"
@@ -42,7 +43,7 @@ void run_fuse(Session& session, FuseVerb& verb) {
   add_map(verb, verb.options);
   take_standard_output(verb.output, verb.writing, verb.json);
   const libchar::LearntFusion learnt = libchar::read_fusion_file(verb.with);
-  for (const std::string& input : {verb.log, learnt.file})
+  for (const std::string& input : {verb.log, verb.with, learnt.file})
     for (const char* suffix : {"", ".json"}) libchar::refuse_same_file(input, verb.output + suffix);
   libchar::check_log_output(verb.output, write_options(verb.writing));
   libchar::ColumnWriter writer(verb.output, write_options(verb.writing));

@@ -97,10 +97,26 @@ void refuse_nothing_asked(const PlotVerb& verb) {
         {ErrorKind::usage, "E0205", "plot", "only one output can go to standard output", "", ""});
 }
 
+/// Those of a folder get their names together.
+void write_together(const std::vector<OutputFile>& outputs, bool overwrite) {
+  std::vector<WholeFile> files;
+  for (const OutputFile& output : outputs)
+    if (output.path != "-") files.emplace_back(output.path, overwrite).write(output.text);
+  std::vector<WholeFile*> all;
+  for (WholeFile& file : files) all.push_back(&file);
+  if (!all.empty()) commit_together(all);
+}
+
 void deliver(const std::vector<OutputFile>& made, bool force) {
   write_together(made, force);
   for (const OutputFile& one : made)
     if (one.path == "-") print(one.text);
+}
+
+/// Those that are given.
+std::vector<std::string> named(std::vector<std::string> paths) {
+  std::erase(paths, "");
+  return paths;
 }
 
 void run_plot(Session& session, PlotVerb& verb) {
@@ -113,6 +129,7 @@ void run_plot(Session& session, PlotVerb& verb) {
   const FigureFormat format = verb.output.empty() ? FigureFormat::svg : format_of(verb);
   for (const std::string* path : {&verb.output, &verb.gnuplot, &verb.csv})
     if (!path->empty() && *path != "-") foresee_output(*path, verb.files, verb.force);
+  refuse_one_name(named({verb.output, verb.gnuplot, verb.csv}));
   std::vector<FigureSource> sources;
   for (const std::string& file : verb.files) sources.push_back(read_figure_source(file));
   const Chart figure = make_figure(sources, verb.figure);

@@ -91,6 +91,7 @@ void run_psd(Session& session, const PsdVerb& verb) {
     text = verb.options.lines ? lines_csv(spectra) : spectra_csv(spectra);
   }
   if (verb.output.empty()) return print(text);
+  refuse_strict(session);
   write_whole_file(verb.output, text, verb.force);
 }
 

@@ -166,7 +166,12 @@ void write_scene(const Session& session,
                  const std::vector<std::string>& inputs) {
   const fs::path folder = fs::path(verb.scene_file).parent_path();
   write_outputs({{verb.scene_file, scene_yaml(scene)}}, folder, inputs, verb.force);
-  if (!verb.json) print_beside(session, fmt::format("wrote {}\n", printable(verb.scene_file)));
+  if (!verb.json)
+    return print_beside(session, fmt::format("wrote {}\n", printable(verb.scene_file)));
+  if (!verb.folder.empty()) return;  // its report is the one document
+  Json document = document_head(session, "scene-written", {});
+  document["scene"] = printable(verb.scene_file);
+  print(dump_json(document));
 }
 
 // Runs everything and writes the reports; says which files.
@@ -194,6 +199,7 @@ void run_and_report(Session& session,
   result.settings = settings_of(verb, result);
   session.terminal.warn(result.warnings, verb.source.path);
   for (const LogInfo& log : result.logs) report_warnings(session, log);
+  refuse_strict(session);
   const ReplayView view = replay_view(result);
   Json document = replay_json(view);
   std::vector<OutputFile> outputs = {{files[0], replay_html(view)},
@@ -225,6 +231,15 @@ void print_algorithms(const Session& session, bool json) {
   print(dump_json(document));
 }
 
+std::vector<std::string> outputs_of(const ReplayVerb& verb) {
+  std::vector<std::string> out = {verb.scene_file};
+  for (const char* name : {"report.html", "report.json", "report.md", "fusion.yaml"})
+    out.push_back((fs::path(verb.folder) / name).string());
+  if (!verb.estimates.empty())
+    out.push_back((fs::path(verb.folder) / ("estimates." + verb.estimates)).string());
+  return out;
+}
+
 void run_replay(Session& session, const ReplayVerb& verb) {
   if (verb.list) return print_algorithms(session, verb.json);
   if (verb.source.path.empty())
@@ -240,6 +255,7 @@ void run_replay(Session& session, const ReplayVerb& verb) {
                          "name a file");
   std::vector<std::string> inputs = scene.files;
   inputs.push_back(verb.source.path);
+  if (!verb.scene_file.empty() && !verb.folder.empty()) refuse_one_name(outputs_of(verb));
   if (!verb.scene_file.empty())
     check_outputs({verb.scene_file}, fs::path(verb.scene_file).parent_path(), inputs, verb.force);
   if (!verb.folder.empty()) run_and_report(session, verb, scene, inputs);
@@ -268,7 +284,8 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReplayVerb>();
   add_replay_source(options, session, verb->source);
   options.add_text("-o,--output", verb->folder, "folder for the results, made when absent")
-      .value_name("DIR");
+      .value_name("DIR")
+      .writes();
   options
       .add_texts("--algorithms",
                  verb->algorithms,
@@ -318,8 +335,9 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
           verb->scene_file,
           "write all that was said as a scene file, which replays to the same results; without "
           "-o nothing else is done")
+      .writes()
       .value_name("FILE");
-  options.add_flag("--force", verb->force, "overwrite results of an earlier run");
+  options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the table");
   add_only(options, *verb);
   return [&session, verb] { run_replay(session, *verb); };

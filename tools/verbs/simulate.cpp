@@ -10,9 +10,12 @@
 
 #include "help/fault_help.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/finding.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/log/write.hpp"
@@ -85,6 +88,21 @@ void read_recorded(const SimulateVerb& verb,
   read_recorded_signal(signal, option, simulation, warnings);
 }
 
+// One signal is put into all sensors.
+void refuse_mixed_units(const ArraySimulation& simulation) {
+  const SimulatedSensor& first = simulation.sensors.front();
+  for (const SimulatedSensor& other : simulation.sensors)
+    if (unit_factor(first.model.unit, other.model.unit) != 1)
+      refuse_simulate("--truth",
+                      fmt::format("is one signal, and {} is in {}, {} in {}",
+                                  printable(first.name, 40),
+                                  printable(first.model.unit, 40),
+                                  printable(other.name, 40),
+                                  printable(other.model.unit, 40)),
+                      "",
+                      "simulate sensors of one unit together");
+}
+
 void set_signals(const SimulateVerb& verb, ArraySimulation& simulation) {
   if (!verb.truth.empty() && simulation.truth_names.size() != 1)
     refuse_simulate(
@@ -92,7 +110,10 @@ void set_signals(const SimulateVerb& verb, ArraySimulation& simulation) {
         fmt::format("is one signal, and the scene has {}", simulation.truth_names.size()),
         "",
         "change them in the scene");
-  if (!verb.truth.empty()) simulation.truth = {parse_signal(verb.truth, "--truth")};
+  if (!verb.truth.empty()) {
+    refuse_mixed_units(simulation);
+    simulation.truth = {parse_signal(verb.truth, "--truth")};
+  }
   if (!verb.temperature.empty())
     simulation.temperature = parse_signal(verb.temperature, "--temperature");
 }
@@ -134,6 +155,7 @@ void place_outputs(SimulateVerb& verb, const Scene& scene) {
                     "--no-scene, or --scene FILE");
   std::vector<std::string> outputs = {verb.output};
   if (!verb.no_scene) outputs.push_back(verb.scene_path);
+  refuse_one_name(outputs);
   for (const std::string& source : verb.sources)
     for (const std::string& output : outputs) refuse_same_file(source, output);
   refuse_scene_outputs(scene, outputs);
@@ -192,6 +214,10 @@ void take_standard_output(SimulateVerb& verb) {
 }
 
 void run_simulate(Session& session, SimulateVerb& verb) {
+  refuse_standard_output("--scene",
+                         verb.scene_path,
+                         "a scene names its recording by where it lies beside it",
+                         "name a file");
   take_standard_output(verb);
   const Scene scene = read_source(session, verb);
   ArraySimulation simulation = *scene.simulate;

@@ -44,12 +44,10 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
 /// first file's follow as a set of their own. Throws Error(output).
 void commit_together(const std::vector<WholeFile*>& files);
 
-/// Files of one job that may lie in several folders: those of a folder get their names together, as by `commit_together`; "-" is none of
-/// them. Throws Error(output) where two are one file, and as `WholeFile`.
-void write_together(const std::vector<OutputFile>& outputs, bool overwrite);
-
-/// Throws Error(output) where one of the paths is another one's file, or the folder that another one lies in.
-void refuse_one_name(const std::vector<std::string>& paths);
+/// An input is never overwritten: throws Error(output) where the output is the input or a part of it: a file of
+/// a rosbag2 recording, the sidecar of an array, of a folder of
+/// results what its documents name, of a fleet its plan, tasks and results.
+void refuse_same_file(const std::string& input, const std::string& output);
 
 /// A file that was written piece by piece, and what went into it.
 struct WrittenFile {

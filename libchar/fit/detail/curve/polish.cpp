@@ -143,7 +143,8 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
     result.half_deviance = value;
   }
 
-  if (!has_covariance(summary, solver_problem)) return result;
+  result.known = has_covariance(summary, solver_problem);
+  if (!result.known) return result;
   ceres::Covariance covariance(exact_covariance_options());
   const std::size_t p = terms.size(), all = p + shapes;
   std::vector<double> block(all * all);

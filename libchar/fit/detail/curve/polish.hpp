@@ -27,6 +27,7 @@ struct Polished {
   TermMatrix covariance = TermMatrix::Zero();  ///< of ln theta of the positive terms
   int iterations = 0;
   bool converged = false;
+  bool known = true;  ///< the covariance; else the likelihood cannot be computed around `at`
 };
 
 /// Minimises the deviance over ln theta of the positive terms of `start` and over the shape.
