@@ -139,8 +139,8 @@ void refuse_one_name(const std::vector<std::string>& paths) {
       throw Error({ErrorKind::output,
                    "E0505",
                    a,
-                   inner == outer ? "two results would be this one file"
-                                  : "would lie in a folder that is another result's file",
+                   inner == outer ? "two outputs are one file"
+                                  : "would lie in a folder that is another output",
                    b,
                    "give each a name of its own"});
     }

@@ -160,8 +160,9 @@ TEST_CASE("verify --rerun: words count as their verb understands them") {
     rerun(words, {});
   // A last word that takes a value does not swallow the folder.
   for (const char* last : {"--units", "--preset", "--topic"}) CHECK(rerun({last}, {}).code == 2);
-  const auto elsewhere = rerun({"--limits", "/etc/hostname"}, {});
+  const auto elsewhere = rerun({"-o", other, "--limits", "/etc/hostname"}, {});
   CHECK(elsewhere.code == 2);
   CHECK_THAT(elsewhere.err, Contains("E0523") && Contains("/etc/hostname"));
-  CHECK_THAT(rerun({"--limits", "/etc/hostname"}, {"--allow-read"}).err, !Contains("E0523"));
+  CHECK_THAT(rerun({"-o", other, "--limits", "/etc/hostname"}, {"--allow-read"}).err,
+             !Contains("E0523"));
 }

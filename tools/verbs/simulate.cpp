@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/finding.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
@@ -38,6 +40,7 @@ using namespace libchar;
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostDevices = 10000;
+constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 50U;
 
 struct SimulateVerb {
   std::vector<std::string> sources;
@@ -68,12 +71,36 @@ void set_length(const SimulateVerb& verb, ArraySimulation& simulation) {
                     "give --rate");
   if (verb.samples > 0 && verb.duration_s)
     refuse_simulate("--samples", "does not go with --duration", "", "give one of them");
-  if (verb.samples > 0) simulation.samples = verb.samples;
+  if (verb.samples > 0) simulation.samples = std::min(verb.samples, kMostSamples);
   if (verb.duration_s)
-    simulation.samples =
-        static_cast<std::uint64_t>(std::llround(*verb.duration_s * simulation.rate_hz));
+    simulation.samples = clamped_whole<std::uint64_t>(
+        std::round(*verb.duration_s * simulation.rate_hz), 0, kMostSamples);
   if (simulation.samples == 0)
     refuse_simulate("simulate", "for how long?", "", "give --duration or --samples");
+  if (simulation.samples == kMostSamples)
+    refuse_simulate(verb.duration_s ? "--duration" : "--samples",
+                    "more samples than a recording can have are asked for",
+                    "",
+                    "at most 1125899906842623");
+}
+
+// A file of so many samples takes two bytes for each value at least.
+void refuse_beyond_disk(const SimulateVerb& verb, const ArraySimulation& simulation) {
+  if (writes_through(verb.output)) return;
+  std::error_code unknown;
+  const fs::path folder = fs::absolute(verb.output).parent_path();
+  const fs::space_info space = fs::space(folder, unknown);
+  const double bytes = 2.0 * static_cast<double>(simulation.samples) *
+                       static_cast<double>(simulation.sensors.size());
+  if (!unknown && bytes > static_cast<double>(space.available))
+    throw Error({ErrorKind::output,
+                 "E0524",
+                 verb.output,
+                 fmt::format("would take {} at least, and {} are free there",
+                             bytes_text(clamped_whole<std::uint64_t>(bytes, 0, kMostSamples)),
+                             bytes_text(space.available)),
+                 "",
+                 "fewer samples, another disk, or -o - into a program"});
 }
 
 // A recorded signal is read after the faults have been understood: that may take a while.
@@ -128,6 +155,7 @@ void add_faults(const SimulateVerb& verb, ArraySimulation& simulation) {
 // What the command line says on top of models or scene.
 void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& simulation) {
   set_length(verb, simulation);
+  refuse_beyond_disk(verb, simulation);
   if (verb.seed_given) simulation.seed = verb.seed;
   if (verb.oversampling > 1) simulation.oversampling = verb.oversampling;
   simulation.deterministic = verb.deterministic;

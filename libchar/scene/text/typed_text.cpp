@@ -21,13 +21,11 @@ namespace {
 /// A scene has defaults for how large a signal is; on a command line a forgotten size would go unseen.
 void refuse_without_size(const std::string& text, const std::string& place) {
   static constexpr std::pair<std::string_view, std::string_view> kSizes[] = {
-      {"constant", "value"},
       {"sine", "amplitude"},
       {"chirp", "amplitude"},
       {"uniform", "amplitude"},
       {"noise", "standard_deviation"},
-      {"random_walk", "step"},
-      {"ramp", "slope"}};
+      {"random_walk", "step"}};
   for (const auto& [kind, size] : kSizes)
     if (text.substr(0, text.find(',')) == kind &&
         text.find(fmt::format(",{}=", size)) == std::string::npos)
@@ -48,7 +46,6 @@ SignalSpec parse_signal(const std::string& text, const std::string& place) {
     constant.value = *value;
     return constant;
   }
-  refuse_without_size(text, place);
   // The map that a scene file would hold.
   std::string map = "{kind: " + text.substr(0, text.find(','));
   for (std::size_t at = text.find(','); at != std::string::npos;) {
@@ -65,7 +62,9 @@ SignalSpec parse_signal(const std::string& text, const std::string& place) {
     map += ", " + pair.substr(0, equals) + ": " + pair.substr(equals + 1);
     at = end;
   }
-  return read_signal(parse_yaml_document(map + "}", place), place, "");
+  SignalSpec signal = read_signal(parse_yaml_document(map + "}", place), place, "");
+  refuse_without_size(text, place);
+  return signal;
 }
 
 namespace {
