@@ -82,7 +82,8 @@ def main():
     parser.add_argument("program", type=os.path.abspath)
     parser.add_argument("--verb")
     arguments = parser.parse_args()
-    usage = json.loads(subprocess.run([arguments.program, "--generate", "json"], capture_output=True, check=True).stdout)
+    described = subprocess.run([arguments.program, "--generate", "json"], capture_output=True, check=True)
+    usage = json.loads(described.stdout)
     wrong = count = 0
     with tempfile.TemporaryDirectory() as top:
         base, folder, plain = pathlib.Path(top) / "base", pathlib.Path(top) / "work", {}
@@ -91,7 +92,8 @@ def main():
         for verb in usage["verbs"]:
             for option in verb["options"]:
                 flag = option["flags"][-1]
-                if flag in PERMISSIONS or flag == "--help" or option["group"].startswith("Reading") or arguments.verb not in (None, verb["name"]):
+                wanted = arguments.verb in (None, verb["name"]) and not option["group"].startswith("Reading")
+                if flag in PERMISSIONS or flag == "--help" or not wanted:
                     continue
                 count += 1
                 same = without_effect(arguments.program, verb, option, base, folder, plain)
