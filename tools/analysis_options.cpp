@@ -37,7 +37,8 @@ void read_taus(const std::string& text, AllanOptions& allan) {
   if (grid && *grid != TauGrid::list) return;
   allan.taus_s.clear();
   try {
-    for (const std::string& word : words(text)) allan.taus_s.push_back(parse_duration_s(word));
+    for (const std::string& word : words(text))
+      allan.taus_s.push_back(parse_duration_s(word, true));
   } catch (const Error&) {
     refuse("--taus",
            "octave, decade, dense, all, ten or a list of times was expected",
@@ -84,7 +85,7 @@ bool read_segment(const std::string& text, WelchOptions& spectrum, double& segme
   if (text.find_first_not_of("0123456789") == std::string::npos)
     spectrum.segment = parse_count(text, 8);
   else
-    segment_s = parse_duration_s(text);
+    segment_s = parse_duration_s(text, true);
   return false;
 }
 

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <set>
 #include <sstream>
 
 #include "colour.hpp"
@@ -127,7 +128,7 @@ ValueKind kind_of_name(const std::string& name) {
   return kind;
 }
 
-OptionUsage usage_of_option(const CLI::Option& option, const KnownWords& words) {
+OptionUsage usage_of_option(const CLI::Option& option, const OptionNotes& notes) {
   OptionUsage usage;
   for (const std::string& flag : option.get_snames()) usage.flags.push_back("-" + flag);
   for (const std::string& flag : option.get_lnames()) usage.flags.push_back("--" + flag);
@@ -137,9 +138,10 @@ OptionUsage usage_of_option(const CLI::Option& option, const KnownWords& words) 
     if (usage.flags.empty() && usage.name == "TEXT") usage.name = option.get_name(true);
     usage.kind = kind_of_name(usage.name);
   }
-  if (const auto known = words.find(&option); known != words.end()) {
-    usage.words = known->second;
-    usage.kind = ValueKind::words;
+  if (const auto note = notes.find(&option); note != notes.end()) {
+    usage.words = note->second.words;
+    if (!usage.words.empty()) usage.kind = ValueKind::words;
+    usage.only = note->second.only;
   }
   usage.comma_list = option.get_delimiter() == ',';
   usage.required = option.get_required();
@@ -150,6 +152,80 @@ OptionUsage usage_of_option(const CLI::Option& option, const KnownWords& words) 
   for (const CLI::Option* other : option.get_excludes())
     usage.excludes.push_back("--" + other->get_lnames().front());
   return usage;
+}
+
+// "--output" for "-o", as messages name it.
+std::string flag_of(const CLI::Option& option) {
+  if (!option.get_lnames().empty()) return "--" + option.get_lnames().front();
+  return option.get_snames().empty() ? option.get_name(true) : "-" + option.get_snames().front();
+}
+
+void refuse_twice(const CLI::Option& option) {
+  std::set<std::string> named;
+  for (const std::string& value : option.results())
+    if (!named.insert(value.substr(0, value.rfind('='))).second)
+      throw Error({ErrorKind::usage,
+                   "E0205",
+                   flag_of(option),
+                   "one is named twice, and only one of the two would count",
+                   value,
+                   ""});
+}
+
+bool says_how_to_print(const CLI::Option& option) {
+  const std::string flag = flag_of(option);
+  return flag == "--json" || flag == "--quiet" || flag == "--color";
+}
+
+void refuse_beside(const CLI::App& verb, const CLI::Option& alone) {
+  for (const CLI::Option* other : verb.get_options())
+    if (other != &alone && other->count() > 0 && !says_how_to_print(*other))
+      throw Error({ErrorKind::usage,
+                   "E0209",
+                   flag_of(*other),
+                   "has an effect only without " + flag_of(alone),
+                   "",
+                   "leave one of the two out"});
+}
+
+// An option that is accepted has an effect.
+void refuse_without_effect(const CLI::App& verb, const OptionNotes& notes) {
+  for (const CLI::Option* option : verb.get_options()) {
+    const auto note = notes.find(option);
+    if (option->count() == 0 || note == notes.end()) continue;
+    if (note->second.once_each) refuse_twice(*option);
+    if (note->second.alone) refuse_beside(verb, *option);
+    if (!note->second.works || note->second.works()) continue;
+    throw Error({ErrorKind::usage,
+                 "E0209",
+                 flag_of(*option),
+                 "has an effect only " + note->second.only,
+                 "",
+                 "leave it out"});
+  }
+}
+
+// A variable of the shell that is not set is no value: where a name, a folder or a limit belongs it would
+// switch off what was asked for, and
+// the parser would give "--limits=" the next word.
+void refuse_empty_words(const CLI::App& app, const std::vector<std::string>& command) {
+  for (std::size_t i = 1; i < command.size(); ++i) {
+    const std::string& word = command[i];
+    const std::string& before = command[i - 1];
+    const bool cut = word.starts_with("--") && word.size() > 3 && word.find('=') == word.size() - 1;
+    if (!word.empty() && !cut) continue;
+    const bool of_option = !cut && i > 1 && before.starts_with('-') && before.size() > 1;
+    if (const std::string& flag = cut ? word : before; flag == "-o" || flag.starts_with("--output"))
+      throw Error({ErrorKind::output, "E0502", "--output", "an output file needs a name", "", ""});
+    throw Error({ErrorKind::usage,
+                 "E0207",
+                 cut         ? word.substr(0, word.size() - 1)
+                 : of_option ? before
+                             : app.get_name(),
+                 "a value is expected, and this one is empty",
+                 "",
+                 "a variable of the shell that is not set? leave the option out for its default"});
+  }
 }
 
 void check_word(const std::string& text, const std::vector<std::string>& words) {
@@ -196,8 +272,36 @@ Option& Option::excludes(const Option& other) {
 }
 
 Option& Option::known_words(std::vector<std::string> words) {
-  (*words_)[option_] = std::move(words);
+  (*notes_)[option_].words = std::move(words);
   return *this;
+}
+
+Option& Option::only(const std::string& where, std::function<bool()> works) {
+  OptionNote& note = (*notes_)[option_];
+  note.only = where;
+  note.works = std::move(works);
+  return *this;
+}
+
+Option& Option::alone() {
+  (*notes_)[option_].alone = true;
+  return *this;
+}
+
+Option& Option::writes() {
+  (*notes_)[option_].writes = true;
+  return *this;
+}
+
+Option& Option::once_each() {
+  (*notes_)[option_].once_each = true;
+  return *this;
+}
+
+void VerbOptions::only(const std::string& where,
+                       const std::function<bool()>& works,
+                       const std::vector<std::string>& flags) {
+  for (const std::string& flag : flags) added(app_->get_option(flag)).only(where, works);
 }
 
 Option VerbOptions::add_flag(const std::string& names, bool& value, const std::string& help) {
@@ -270,6 +374,15 @@ Option VerbOptions::add_count(const std::string& names,
 Option VerbOptions::add_duration(const std::string& names,
                                  std::optional<double>& seconds,
                                  const std::string& help) {
+  const auto read = [&seconds](const std::string& text) {
+    seconds = libchar::parse_duration_s(text, true);
+  };
+  return add_parsed(names, "TIME", read, help);
+}
+
+Option VerbOptions::add_instant(const std::string& names,
+                                std::optional<double>& seconds,
+                                const std::string& help) {
   const auto read = [&seconds](const std::string& text) {
     seconds = libchar::parse_duration_s(text);
   };
@@ -387,7 +500,7 @@ void CommandLine::add(const VerbEntry& entry, Session& session) {
       [&session] { session.terminal.be_quiet(); },
       "nothing but errors on stderr: no progress, no warnings, no notes");
   examples_[entry.name] = entry.examples;
-  VerbOptions options(*sub, words_);
+  VerbOptions options(*sub, notes_);
   options
       .add_parsed(
           "--color",
@@ -402,13 +515,17 @@ void CommandLine::add(const VerbEntry& entry, Session& session) {
           "colour statuses and messages; auto: on a terminal, unless NO_COLOR is set (default: "
           "auto)")
       .known_words(libchar::words_of<Colour>());
-  sub->final_callback(entry.add_options(options, session));
+  sub->final_callback([this, sub, run = entry.add_options(options, session)] {
+    if (only_parses_) return;
+    refuse_without_effect(*sub, notes_);
+    run();
+  });
 }
 
 VerbUsage CommandLine::usage_of(const CLI::App& verb) const {
   VerbUsage usage{verb.get_name(), verb.get_description(), {}, {}, examples_.at(verb.get_name())};
   for (const CLI::Option* option : verb.get_options()) {
-    OptionUsage one = usage_of_option(*option, words_);
+    OptionUsage one = usage_of_option(*option, notes_);
     (one.flags.empty() ? usage.arguments : usage.options).push_back(std::move(one));
   }
   return usage;
@@ -421,10 +538,46 @@ ProgramUsage CommandLine::usage() const {
   usage.version = libchar::version();
   usage.footer = app_->get_footer();
   for (const CLI::Option* option : app_->get_options())
-    usage.options.push_back(usage_of_option(*option, words_));
+    usage.options.push_back(usage_of_option(*option, notes_));
   for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; }))
     usage.verbs.push_back(usage_of(*verb));
   return usage;
+}
+
+void CommandLine::parse(const std::vector<std::string>& argv) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
+  const std::vector<std::string> command = with_verb(*app_, with_joined_verb(argv, verbs));
+  check_verb(*app_, command);
+  refuse_empty_words(*app_, command);
+  std::vector<std::string> last_first(command.rbegin(), command.rend() - 1);
+  app_->parse(last_first);
+}
+
+std::vector<ParsedWord> CommandLine::parsed(const std::vector<std::string>& argv) {
+  only_parses_ = true;
+  const auto answer = run(argv);
+  only_parses_ = false;
+  std::vector<ParsedWord> out;
+  if (answer) return out;  // --help
+  for (const CLI::Option* option : chosen(*app_).get_options()) {
+    const OptionUsage usage = usage_of_option(*option, notes_);
+    const auto note = notes_.find(option);
+    const bool writes = note != notes_.end() && note->second.writes;
+    const std::size_t equals = usage.name.find('=');
+    const bool names_file = kind_of_name(usage.name.substr(equals + 1)) != ValueKind::text;
+    for (const std::string& value : option->results()) {
+      const bool alone = option->get_expected_max() == 0 && value == "true";
+      const std::string after =
+          equals == std::string::npos ? value : value.substr(value.find('=') + 1);
+      out.push_back({usage.flags.empty() ? "" : usage.flags.back(),
+                     alone ? "" : value,
+                     names_file && !usage.name.empty() ? after : "",
+                     writes});
+    }
+  }
+  return out;
 }
 
 std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv) {
@@ -433,13 +586,7 @@ std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv
     throw Error({ErrorKind::usage, code, name, what, "", name + " --help"});
   };
   try {
-    std::vector<std::string> verbs;
-    for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; }))
-      verbs.push_back(verb->get_name());
-    const std::vector<std::string> command = with_verb(*app_, with_joined_verb(argv, verbs));
-    check_verb(*app_, command);
-    std::vector<std::string> last_first(command.rbegin(), command.rend() - 1);
-    app_->parse(last_first);
+    parse(argv);
   } catch (const CLI::Success& answer) {  // --help, --version
     std::ostringstream out, err;
     app_->exit(answer, out, err);

@@ -26,13 +26,21 @@ struct Example;
 struct ProgramUsage;
 struct VerbUsage;
 
-/// The values of an option that are known beforehand.
-using KnownWords = std::map<const CLI::Option*, std::vector<std::string>>;
+/// What is known of an option beside what the parser knows.
+struct OptionNote {
+  std::vector<std::string> words;  ///< the values that are known beforehand
+  std::string only;                ///< where it has an effect ("with --curve"), "" everywhere
+  std::function<bool()> works;     ///< has it one in this command? asked where it is given
+  bool alone = false;              ///< nothing else is asked where it is given, but how to print it
+  bool writes = false;             ///< where results go, or what may be overwritten
+  bool once_each = false;          ///< of several values none is for what another is for
+};
+using OptionNotes = std::map<const CLI::Option*, OptionNote>;
 
 /// An option or argument that was added, for what is said about few of them.
 class Option {
  public:
-  Option(CLI::Option* option, KnownWords* words) : option_(option), words_(words) {}
+  Option(CLI::Option* option, OptionNotes* notes) : option_(option), notes_(notes) {}
   Option& required();
   /// The heading in the help under which it stands.
   Option& group(const std::string& heading);
@@ -45,10 +53,19 @@ class Option {
   Option& excludes(const Option& other);
   /// Values that are offered by the completion and the man page; others are not refused.
   Option& known_words(std::vector<std::string> words);
+  /// It has an effect only there ("with --curve"): the help says so, and where it is given and `works` says no,
+  /// it is refused.
+  Option& only(const std::string& where, std::function<bool()> works);
+  /// It asks for something else than the verb does: but --json and how to print, no other option goes with it.
+  Option& alone();
+  /// It says where results go, or what may be overwritten.
+  Option& writes();
+  /// Lists: of "a=1,a=2" and "a,a" the second is refused.
+  Option& once_each();
 
  private:
   CLI::Option* option_;
-  KnownWords* words_;
+  OptionNotes* notes_;
 };
 
 /// The options of one verb. Names are "FILE" (an argument by its place), "--force", or "-o,--output".
@@ -58,7 +75,12 @@ class Option {
 /// or folder.
 class VerbOptions {
  public:
-  VerbOptions(CLI::App& app, KnownWords& words) : app_(&app), words_(&words) {}
+  VerbOptions(CLI::App& app, OptionNotes& notes) : app_(&app), notes_(&notes) {}
+
+  /// `Option::only` of options that were added.
+  void only(const std::string& where,
+            const std::function<bool()>& works,
+            const std::vector<std::string>& flags);
 
   Option add_flag(const std::string& names, bool& value, const std::string& help);
   Option add_text(const std::string& names, std::string& value, const std::string& help);
@@ -85,10 +107,14 @@ class VerbOptions {
                    const std::string& help,
                    std::uint64_t lowest = 0,
                    std::uint64_t highest = std::numeric_limits<std::uint64_t>::max());
-  /// Seconds ("90", "1.5h").
+  /// Seconds ("90", "1.5h"), above zero.
   Option add_duration(const std::string& names,
                       std::optional<double>& seconds,
                       const std::string& help);
+  /// Seconds after a beginning, which 0 is.
+  Option add_instant(const std::string& names,
+                     std::optional<double>& seconds,
+                     const std::string& help);
   /// Hertz ("200", "1.5kHz").
   Option add_rate(const std::string& names, std::optional<double>& hertz, const std::string& help);
   /// Bytes ("4096", "64KiB").
@@ -119,10 +145,10 @@ class VerbOptions {
                   const std::string& help,
                   std::function<void(const std::string&)> use);
 
-  Option added(CLI::Option* option) { return {option, words_}; }
+  Option added(CLI::Option* option) { return {option, notes_}; }
 
   CLI::App* app_;
-  KnownWords* words_;
+  OptionNotes* notes_;
 };
 
 /// Verbs of two words ("fleet plan") are called with a hyphen between them; here they are joined. A
@@ -130,6 +156,14 @@ class VerbOptions {
 /// that asks for help of a first word becomes "help fleet".
 std::vector<std::string> with_joined_verb(const std::vector<std::string>& command,
                                           const std::vector<std::string>& verbs);
+
+/// A word of a command as its verb understands it.
+struct ParsedWord {
+  std::string flag;   ///< "--output"; "" where it stands by its place
+  std::string value;  ///< one of several; "" of a flag
+  std::string file;   ///< the file or folder that it names, "" where it names none
+  bool writes = false;
+};
 
 /// A program with verbs.
 class CommandLine {
@@ -151,12 +185,17 @@ class CommandLine {
   /// (--version), or nothing. Throws Error(usage) for what cannot be understood, and whatever the
   /// verb throws.
   std::optional<std::string> run(const std::vector<std::string>& argv);
+  /// The same words as the verb's own options take them, and nothing is run. Throws as `run`.
+  std::vector<ParsedWord> parsed(const std::vector<std::string>& argv);
 
  private:
+  void parse(const std::vector<std::string>& argv);
+
   VerbUsage usage_of(const CLI::App& verb) const;
 
   std::unique_ptr<CLI::App> app_;
-  KnownWords words_;
+  OptionNotes notes_;
+  bool only_parses_ = false;
   std::map<std::string, std::vector<Example>> examples_;  ///< of each verb
 };
 

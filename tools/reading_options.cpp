@@ -24,9 +24,9 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
                   "whose stamps, where messages have several: header (the sensor's), log (when "
                   "recorded), publish (default: auto)")
       .group("Reading");
-  verb.add_duration("--from",
-                    options.from_s,
-                    "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
+  verb.add_instant("--from",
+                   options.from_s,
+                   "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
       .group("Reading");
   verb.add_duration(
           "--to",
@@ -41,7 +41,7 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
           "--interval",
           "TIME",
           [&options](const std::string& text) {
-            options.rate_hz = 1 / libchar::parse_duration_s(text);
+            options.rate_hz = 1 / libchar::parse_duration_s(text, true);
           },
           "the same as the time from sample to sample (s, or 5min…)")
       .group("Reading");
@@ -66,6 +66,7 @@ void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME=FACTOR")
+      .once_each()
       .group("Reading");
   verb.add_texts(
           "--unit",
@@ -76,6 +77,7 @@ void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME=UNIT")
+      .once_each()
       .group("Reading");
 }
 
@@ -177,6 +179,7 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
           "channel to read, by name, position c0, c1… or pattern ('gyro*'), or with ! in front not "
           "to read ('!temp'); repeat it or separate by commas (default: all)")
       .separated_by_commas()
+      .once_each()
       .one_value_each()
       .value_name("NAME")
       .group("Reading");

@@ -181,6 +181,7 @@ void add_data_options(VerbOptions& options, Session& session, ReplaySource& sour
                  "channels that measure one quantity: names, positions c0, c1…, or patterns "
                  "('gyro*'); separate by commas or repeat")
       .separated_by_commas()
+      .once_each()
       .one_value_each()
       .value_name("NAME,…")
       .group(group);
@@ -189,6 +190,7 @@ void add_data_options(VerbOptions& options, Session& session, ReplaySource& sour
                  source.reference,
                  "channel with the truth; of several the mean (default: none)")
       .separated_by_commas()
+      .once_each()
       .one_value_each()
       .value_name("NAME")
       .group(group);
@@ -200,6 +202,7 @@ void add_data_options(VerbOptions& options, Session& session, ReplaySource& sour
       .group(group);
   options.add_texts("--model", source.models, "noise model of a sensor, SENSOR=FILE.sensor.yaml")
       .one_value_each()
+      .once_each()
       .value_name("SENSOR=FILE")
       .group(group);
   options
@@ -277,10 +280,10 @@ void add_replay_source(VerbOptions& options, Session& session, ReplaySource& sou
           "learnt @rest, @learning, @run or @FROM..TO (default: the scene's)")
       .value_name("TERMS[@WHERE]");
   add_preparation_options(options, source);
-  options.add_duration("--warm-up",
-                       source.warm_up_s,
-                       "so long at its start the evaluation is run and not scored (default: the "
-                       "scene's)");
+  options.add_instant("--warm-up",
+                      source.warm_up_s,
+                      "so long at its start the evaluation is run and not scored (default: the "
+                      "scene's)");
   options
       .add_texts(
           "--fault", source.faults, std::string(kFaultHelp) + "; injected on top of the scene's")

@@ -12,6 +12,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/process/version.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/report/json/replay_json.hpp"
 #include "verb.hpp"
 
@@ -40,32 +41,73 @@ std::vector<std::string> ignored_keys() {
                "look at its command, and run that by hand"});
 }
 
-/// What the document says, without anything that writes elsewhere than into `folder`: a document is
-/// data, its command is no order.
-std::vector<std::string> words_of(const std::string& document,
-                                  const Json& command,
-                                  const std::string& folder) {
+/// Of a program of its own, so that nothing of this run changes.
+std::vector<ParsedWord> parsed_words(const std::vector<std::string>& words) {
+  Session session;
+  CommandLine line("sensorchar", "", "", "");
+  for (const VerbEntry& verb : verbs()) line.add(verb, session);
+  return line.parsed(words);
+}
+
+std::vector<std::string> words_in(const Json& command) {
   std::vector<std::string> words;
   for (const Json& word : command)
     if (word.is_string()) words.push_back(word.get<std::string>());
+  return words;
+}
+
+bool is_below(const fs::path& folder, const fs::path& file) {
+  std::error_code ignored;
+  const fs::path outer = fs::weakly_canonical(folder, ignored);
+  const fs::path inner = fs::weakly_canonical(file, ignored);
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+/// A document is data: what its command reads lies where one stands (or --in), or beside the folder of the
+/// results, unless that is allowed.
+void refuse_reading(const RerunOptions& options, const std::vector<ParsedWord>& words) {
+  const fs::path here = options.inputs_in.empty() ? "." : options.inputs_in;
+  const fs::path beside = fs::absolute(options.document).parent_path().parent_path();
+  std::vector<std::string> outside;
+  for (const ParsedWord& word : words) {
+    if (word.flag == "--allow-outside") outside.push_back(word.flag);
+    if (word.writes || word.file.empty() || word.file == "-") continue;
+    const fs::path file = fs::absolute(here) / word.file;
+    if (!is_below(here, file) && !is_below(beside, file)) outside.push_back(printable(word.file));
+  }
+  if (outside.empty() || options.allow_read) return;
+  throw Error({ErrorKind::usage,
+               "E0523",
+               options.document,
+               fmt::format("its command reads elsewhere than here and beside the document: {}",
+                           fmt::join(outside, ", ")),
+               "",
+               "--allow-read where you trust it"});
+}
+
+/// The command as its verb understands it, without anything that writes elsewhere than into the folder.
+std::vector<std::string> words_of(const RerunOptions& options, const Json& command) {
+  const std::vector<std::string> words = words_in(command);
   if (words.size() < 2 ||
       std::find(std::begin(kVerbs), std::end(kVerbs), words[1]) == std::end(kVerbs))
-    refuse_rerun(document,
+    refuse_rerun(options.document,
                  "only what characterize and replay wrote is run again",
                  words.size() < 2 ? "" : words[1]);
-  std::vector<std::string> out = {words[0], words[1]};
-  for (std::size_t i = 2; i < words.size(); ++i) {
-    const std::string& word = words[i];
-    if (word == "-o" || word == "--output") {
-      ++i;
-      continue;
-    }
-    if (word.starts_with("--write-scene")) refuse_rerun(document, "it writes a scene too", word);
-    const bool dropped = word.starts_with("--output=") || word == "--force" || word == "--json" ||
-                         (word.starts_with("-o") && word.size() > 2);
-    if (!dropped) out.push_back(word);
+  const std::vector<ParsedWord> parsed = parsed_words(words);
+  refuse_reading(options, parsed);
+  std::vector<std::string> out = {words[0], words[1]}, places;
+  for (const ParsedWord& word : parsed) {
+    if (word.flag == "--write-scene")
+      refuse_rerun(options.document, "it writes a scene too", word.value);
+    if (word.writes || word.flag == "--json") continue;
+    if (word.flag.empty())
+      places.push_back(word.value);
+    else
+      out.push_back(word.flag + (word.value.empty() ? "" : "=" + word.value));
   }
-  out.insert(out.end(), {"-o", folder});
+  out.push_back("--output=" + fs::absolute(options.folder).string());
+  out.emplace_back("--");
+  out.insert(out.end(), places.begin(), places.end());
   return out;
 }
 
@@ -123,18 +165,14 @@ bool Rerun::holds() const {
           std::all_of(files.begin(), files.end(), [](const auto& f) { return f.second; }));
 }
 
-Rerun rerun(Session& session,
-            const std::string& document,
-            const std::string& folder,
-            const std::string& inputs_in) {
+Rerun rerun(Session& session, const RerunOptions& options) {
+  const std::string& document = options.document;
   const Json was = result_document(document);
-  const auto words = words_of(document, was.value("command", Json::array()), folder);
-  const fs::path into = fs::absolute(folder), from = fs::absolute(document);
-  std::vector<std::string> absolute = words;
-  absolute.back() = into.string();
+  const auto words = words_of(options, was.value("command", Json::array()));
+  const fs::path into = fs::absolute(options.folder), from = fs::absolute(document);
   const fs::path here = fs::current_path();
-  if (!inputs_in.empty()) fs::current_path(inputs_in);
-  run_words(session, absolute);
+  if (!options.inputs_in.empty()) fs::current_path(options.inputs_in);
+  run_words(session, words);
   fs::current_path(here);
   Rerun out;
   out.document = document;

@@ -23,13 +23,16 @@ struct Rerun {
 /// Digits that another build, processor or version of a library is allowed (docs/reliability.md).
 inline constexpr double kSameDigits = 1e-8;
 
-/// `document` was written by characterize or replay; its inputs are where its command says, from
-/// `inputs_in` ("": from here). Runs with the words of that command, but into `folder`; nothing
-/// else is written. Throws Error(usage) where the command does anything else, and what the run
-/// throws.
-Rerun rerun(Session& session,
-            const std::string& document,
-            const std::string& folder,
-            const std::string& inputs_in);
+struct RerunOptions {
+  std::string document;     ///< that characterize or replay wrote
+  std::string folder;       ///< of the second run
+  std::string inputs_in;    ///< where its inputs are looked for ("": from here)
+  bool allow_read = false;  ///< its command may read from elsewhere than there and beside it
+};
+
+/// Runs with the words of the document's command as its verb understands them, but into `folder`; nothing else
+/// is written. Throws
+/// Error(usage) where the command does anything else or reads elsewhere, and what the run throws.
+Rerun rerun(Session& session, const RerunOptions& options);
 
 }  // namespace sensorchar

@@ -15,6 +15,7 @@
 #include "help/flag_names.hpp"
 #include "help/marked_line.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/text/shell_word.hpp"
@@ -59,6 +60,16 @@ void report_warnings(Session& session, const libchar::Findings& warnings, const 
   session.warned_files.push_back(file);
 }
 
+void refuse_strict(const Session& session) {
+  if (!session.strict || session.warned_files.empty()) return;
+  throw Error({ErrorKind::input,
+               "E0206",
+               session.warned_files.front(),
+               "has warnings, and --strict was given",
+               "",
+               "leave out --strict to accept what the warnings say"});
+}
+
 libchar::Json document_head(const Session& session,
                             const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs) {
@@ -81,6 +92,7 @@ void write_document(Session& session,
     text = libchar::dump_json(document);
   }
   if (output.path.empty()) return print(text);
+  refuse_strict(session);
   libchar::write_whole_file(output.path, text, output.force);
 }
 
@@ -111,6 +123,28 @@ void foresee_output(const std::string& path, const std::vector<std::string>& inp
   if (path.empty()) return;
   for (const std::string& input : inputs) libchar::refuse_same_file(input, path);
   libchar::check_output(path, force);
+}
+
+void refuse_one_name(const std::vector<std::string>& paths) {
+  namespace fs = std::filesystem;
+  const auto place = [](const std::string& path) {
+    std::error_code ignored;
+    return fs::weakly_canonical(fs::absolute(path), ignored);
+  };
+  for (const std::string& a : paths)
+    for (const std::string& b : paths) {
+      if (&a == &b || a == "-" || b == "-") continue;
+      const fs::path inner = place(a), outer = place(b);
+      const auto apart = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
+      if (apart.first != outer.end() || libchar::writes_through(b)) continue;
+      throw Error({ErrorKind::output,
+                   "E0505",
+                   a,
+                   inner == outer ? "two outputs are one file"
+                                  : "would lie in a folder that is another output",
+                   b,
+                   "give each a name of its own"});
+    }
 }
 
 namespace {
@@ -173,13 +207,7 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
   try {
     work();
     work_is_done();
-    if (session.strict && !session.warned_files.empty())
-      throw Error({ErrorKind::input,
-                   "E0206",
-                   session.warned_files.front(),
-                   "has warnings, and --strict was given",
-                   "",
-                   "leave out --strict to accept what the warnings say"});
+    refuse_strict(session);
     return 0;
   } catch (const Error& error) {
     // An error after a signal is its consequence: the input of a pipe ended early.

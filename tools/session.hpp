@@ -27,6 +27,9 @@ struct Session {
 void report_warnings(Session& session, const libchar::LogInfo& info);
 void report_warnings(Session& session, const libchar::Findings& warnings, const std::string& file);
 
+/// With --strict nothing is written of an input that has warnings: throws where one was said.
+void refuse_strict(const Session& session);
+
 /// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],
 /// "findings":[{file,code,severity,sentence,count,…}],"measured":{"work":{…}}}: the head of every --json
 /// document; the verb adds its own keys behind.
@@ -68,6 +71,9 @@ void print_summary(Session& session, const std::string& output, const std::strin
 /// A file that cannot be written is refused before the work is done: it is an input, stands
 /// already, or its folder cannot be written. An empty path is stdout.
 void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force);
+
+/// Throws Error(output) where one of the paths is another one's file, or would lie in a folder that another one is.
+void refuse_one_name(const std::vector<std::string>& paths);
 
 /// Runs `work` and turns whatever happened into one message and an exit code: 0 ok, 1 internal, 2
 /// usage, 3 input, 4 numeric, 5 output, 6 a failed check, 128 + signal when stopped.

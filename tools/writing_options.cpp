@@ -5,7 +5,22 @@
 
 namespace sensorchar {
 
-void add_writing_options(VerbOptions& verb, WritingOptions& writing, const std::string& stamps) {
+namespace {
+
+/// Does the log that goes to `output` become a table with a column of stamps? Where its name is not known yet:
+/// nothing is refused.
+std::optional<bool> becomes_table(const WritingOptions& writing, const std::string& output) {
+  if (output.empty()) return std::nullopt;
+  if (output == "-" && writing.options.format == "auto") return true;
+  return libchar::format_to_write(output, writing.options).writes_stamps;
+}
+
+}  // namespace
+
+void add_writing_options(VerbOptions& verb,
+                         WritingOptions& writing,
+                         const std::string& stamps,
+                         const std::string& output) {
   verb.add_choice("--as",
                   writing.options.format,
                   libchar::written_format_words(),
@@ -24,6 +39,12 @@ void add_writing_options(VerbOptions& verb, WritingOptions& writing, const std::
                   "npy, raw: order of the bytes (default: little)");
   verb.add_flag(
       "--no-time-column", writing.no_time_column, "csv: leave out the first column " + stamps);
+  verb.only("where the log becomes npy or raw",
+            [&writing, &output] { return !becomes_table(writing, output).value_or(false); },
+            {"--dtype", "--order", "--endian"});
+  verb.only("where the log becomes csv",
+            [&writing, &output] { return becomes_table(writing, output).value_or(true); },
+            {"--no-time-column"});
 }
 
 libchar::WriteOptions write_options(const WritingOptions& writing) {

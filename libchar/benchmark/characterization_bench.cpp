@@ -16,6 +16,10 @@
 namespace libchar {
 namespace {
 
+/// A term whose bound is wider than this share of it is not in the mean of errors: an estimate of
+/// zero would be the best there is.
+constexpr double kTellable = 0.5;
+
 struct NamedNoise {
   const char* name;
   double rate_hz;

@@ -32,10 +32,6 @@ struct CharacterizationBenchOptions {
   std::vector<std::string> methods;  ///< empty: all
 };
 
-/// A term whose bound is wider than this share of it is not in the mean of errors: an estimate of
-/// zero would be the best there is.
-inline constexpr double kTellable = 0.5;
-
 /// How well a method gets one coefficient that is in the records.
 struct TermAccuracy {
   Term term = Term::white;
@@ -51,7 +47,7 @@ struct EstimatorAccuracy {
   bool is_ours = true;
   bool told = false;  ///< which terms are in the records
   std::vector<TermAccuracy> terms;
-  /// geometric mean of RMSE over bound, of the terms that a record can tell (kTellable)
+  /// geometric mean of RMSE over bound, of the terms that a record can tell: whose bound is below half of them
   double error = 0;
   /// records in which it states a coefficient that is not in them; no count: it was told what is, or all are
   Figure false_terms;

@@ -9,11 +9,13 @@
 #include <functional>
 
 #include "libchar/characterize/detail/channel_stages.hpp"
+#include "libchar/characterize/detail/longest_segment.hpp"
 #include "libchar/characterize/detail/slow_channels.hpp"
 #include "libchar/characterize/detail/still.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
+#include "libchar/log/channel_names.hpp"
 #include "libchar/log/gravity.hpp"
 
 namespace libchar {
@@ -177,6 +179,20 @@ RecordingView between(const RecordingView& recording, const Stretch& stretch) {
 
 }  // namespace
 
+void check_characterization(const std::string& path, const CharacterizeOptions& options) {
+  check_still(options.still, options.reading);
+  CharacterizeOptions asked = options;
+  asked.reading = with_temperature(options);
+  LogInfo head = read_log_head(path, asked.reading);
+  head.bytes = 0;                                     // nothing is kept of it
+  if (!(head.time.rate_hz > 0)) asked.segment_s = 0;  // a table tells its rate when it is read
+  CharacterizeWorkspace workspace;
+  ChannelStages(asked, workspace, 0, false).begin(head);
+  if (asked.wanted.spectrum)
+    refuse_longer_segment(
+        path, asked.reading, asked.spectrum.segment, asked.segment_s, no_progress());
+}
+
 Characterization characterize(const std::string& path,
                               const CharacterizeOptions& options,
                               Progress& progress) {
@@ -201,6 +217,8 @@ Characterization characterize(const std::string& path,
       if (std::isfinite(stretch->to_s)) chosen.to_s = stretch->to_s;
     }
   }
+  if (options.wanted.spectrum)
+    refuse_longer_segment(path, chosen, options.spectrum.segment, options.segment_s, progress);
   Source source;
   source.read = [&](BlockSink& sink) { return read_log(path, chosen, sink, progress); };
   if (!read_once(path))

@@ -130,6 +130,10 @@ struct Characterization {
   double seconds = 0;  ///< measured; kept apart from everything else in the outputs, NaN: left out
 };
 
+/// Throws what `characterize` would refuse of these options by the log's head alone: for a plan, whose tasks
+/// run later and elsewhere.
+void check_characterization(const std::string& path, const CharacterizeOptions& options);
+
 /// Reads the log once (several times where its channels together are more than `memory_bytes`) and
 /// computes what the report shows. Throws Error(input) about the log, Error(usage) about options
 /// that do not fit it; what the numbers of a channel do not allow is among its `findings`.

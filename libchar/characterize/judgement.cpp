@@ -81,7 +81,8 @@ struct Judge {
   }
 
   void look_at_terms(const NoiseFit& fit) {
-    if (const std::string letters = letters_with(fit, Status::undetermined); !letters.empty()) {
+    if (const std::string letters = letters_with(fit, Status::undetermined);
+        !letters.empty() && !has(fit.findings, "undetermined")) {
       add("undetermined",
           fmt::format("Undetermined: {}. Another term could explain the same part of the record, "
                       "or its Allan curve "

@@ -240,4 +240,11 @@ std::string shown_term_unit(std::string_view term, std::string_view unit) {
   return u.starts_with("1·") ? u.substr(std::string_view("1·").size()) : u;
 }
 
+std::optional<double> unit_factor(std::string_view from, std::string_view to) {
+  const auto x = find_unit(from), y = find_unit(to);
+  if (!x || !y) return 1;
+  if (x->quantity != y->quantity) return std::nullopt;
+  return x->to_si / y->to_si;
+}
+
 }  // namespace libchar

@@ -48,6 +48,10 @@ struct Unit {
 /// them; nothing for an unknown text. A numeric factor in front ("1/16.4 deg/s") is part of the unit.
 std::optional<Unit> find_unit(std::string_view text);
 
+/// What a number in `from` is multiplied by to be one in `to`: 1 where either is not known; nothing where they
+/// are of two quantities.
+std::optional<double> unit_factor(std::string_view from, std::string_view to);
+
 /// What a unit alone leaves open: the sides of a density; or that it is not the term but the lowest Allan deviation of it.
 enum class Reading { plain, one_sided, two_sided, floor };
 template <>

@@ -25,9 +25,9 @@ constexpr FigureKind kKinds[] = {
     {"timeline", "reference, estimate and best sensor over the run", true, timeline_figure},
     {"error", "error of the estimate and of the best sensor over the run", true, error_figure},
     {"window", "error in a moving window, a line a method", true, window_figure},
-    {"weights", "weights over the run, a line a sensor", true, weights_figure},
-    {"variances", "noise variances as estimated, a line a sensor", true, variances_figure},
-    {"faults", "known faults and findings, a row a sensor", true, faults_figure},
+    {"weights", "weights over the run, a line a sensor", true, weights_figure, true},
+    {"variances", "noise variances as estimated, a line a sensor", true, variances_figure, true},
+    {"faults", "known faults and findings, a row a sensor", true, faults_figure, true},
     {"error-allan", "Allan deviation of the error, a line a method", true, error_allan_figure},
 };
 
@@ -69,6 +69,19 @@ void refuse_mixed(std::span<const FigureSource> sources, const FigureKind& kind)
                  "sensorchar compare A B holds two replays against each other"});
 }
 
+void refuse_unused(const FigureOptions& options, const FigureKind& kind) {
+  const auto refuse = [&](const char* option, const char* what) {
+    throw Error({ErrorKind::usage,
+                 "E0978",
+                 option,
+                 fmt::format("the figure {} is of no {}", kind.word, what),
+                 "",
+                 "leave it out, or choose another `kind`"});
+  };
+  if (!options.algorithm.empty() && !kind.of_algorithm) refuse("`algorithm`", "single algorithm");
+  if (!options.input.empty() && !kind.of_replay) refuse("`input`", "replay");
+}
+
 /// Files of one name in several folders are told apart by these.
 std::vector<FigureSource> with_names_apart(std::span<const FigureSource> sources) {
   std::vector<FigureSource> out(sources.begin(), sources.end());
@@ -106,6 +119,7 @@ Chart make_figure(std::span<const FigureSource> sources, const FigureOptions& op
                  "one a file, in their order"});
   const FigureKind& kind = kind_of(options.kind.empty() ? first_kind(sources) : options.kind);
   refuse_mixed(sources, kind);
+  refuse_unused(options, kind);
   Chart out = kind.make(with_names_apart(sources), options);
   for (const auto* axis : {&out.x, &out.y})
     if (axis->log && !(axis->low > 0))

@@ -29,6 +29,7 @@ struct FigureKind {
   std::string_view title;
   bool of_replay = false;
   Chart (*make)(std::span<const FigureSource> sources, const FigureOptions& options) = nullptr;
+  bool of_algorithm = false;  ///< of one of the replay: `FigureOptions::algorithm`
 };
 
 /// In the order of the help.

@@ -146,6 +146,11 @@ double rejection_limit(const Attempt& now, const Attempt& dropped) {
   return std::clamp(16 * lost, 1.0, 16.0);
 }
 
+/// Of a model that a record is impossible under, no double holds it.
+std::string ratio_text(double ratio) {
+  return std::isfinite(ratio) ? fmt::format("{:.1f}", ratio) : "beyond all numbers";
+}
+
 /// A drift falls into the first few coefficients: a ramp, or those coefficients left out.
 void answer_low_frequencies(Attempt& now) {
   const Band rest = without_lowest(now);
@@ -161,13 +166,14 @@ void answer_low_frequencies(Attempt& now) {
   if (!now.options.terms[kRamp])
     ramp = attempt(*now.bins, now.band, now.fit.rate_hz, now.fit.samples, with);
   const double gain = ramp ? 2 * (now.half_deviance - ramp->half_deviance) : 0;
+  if (std::isnan(rejects)) return;  // there is no likelihood to hold them against
   if (rejects < limit && low.p > 1e-3 && gain < kRampRatio) return;
 
-  const std::string alarm = fmt::format(
-      "the slowest {} coefficients do not follow the rest (2 ln L {:.1f}; with a ramp {:.1f})",
-      kLowest - 1,
-      rejects,
-      gain);
+  const std::string alarm =
+      fmt::format("the slowest {} coefficients do not follow the rest (2 ln L {}; with a ramp {})",
+                  kLowest - 1,
+                  ratio_text(rejects),
+                  ratio_text(gain));
   const bool ramp_explains =
       ramp && gain > kRampRatio && rejection(dropped, ramp->fit) < limit &&
       goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.005;

@@ -42,6 +42,8 @@ struct LookedAt {
   LogInfo head;
   std::vector<std::string> in_log;  ///< what the log calls the channels, where they are to be units
   std::string sha256, problem;
+  std::optional<Problem> wrong_option =
+      {};  ///< why it cannot be read, where that is no fault of the log
 };
 
 /// Other formats know it only once they are read.
@@ -70,12 +72,14 @@ LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options, 
                    "is not a regular file; logs of a fleet are read by workers, and again",
                    "",
                    "copy it to a file first"});
+    check_characterization(device.log, options);
     out.head = read_log_head(device.log, options.reading);
     if (by_channel) out.in_log = own_names(out.head, device, options.reading);
     if (is_without_rate(out.head, options.reading)) known_rate_hz(out.head);
     out.sha256 = device.sha256.empty() ? digest_of_log(device.log) : device.sha256;
   } catch (const Error& error) {
     Problem problem = error.problem();
+    if (problem.kind == ErrorKind::usage) out.wrong_option = problem;
     // The sentence that holds these has a hint of its own.
     if (!problem.hint.empty())
       problem.what += fmt::format(" ({})", std::exchange(problem.hint, ""));
@@ -118,6 +122,10 @@ void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& lo
   }
   const bool any_left = count < logs.size();
   if (count == 0 || (skip && any_left)) return;
+  // Options of the command line are for all logs: as characterize says it.
+  if (manifest.file.empty())
+    for (const LookedAt& log : logs)
+      if (log.wrong_option) throw Error(*log.wrong_option);
   throw Error({ErrorKind::input,
                "E0782",
                manifest.file,

@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 
 namespace libchar {

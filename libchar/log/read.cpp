@@ -28,6 +28,7 @@
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/csv/unpacker.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/detail/unused_options.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/reading_fields.hpp"
 #include "libchar/log/time/grid.hpp"
@@ -109,6 +110,12 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
                "",
                fmt::format("`format` {}, or write FILE.json (docs: raw binary)",
                            fmt::join(words.begin() + 1, words.end(), "|"))});
+}
+
+std::unique_ptr<RowSource> open_log(const std::string& path, const ReadOptions& options) {
+  const Format& format = format_of(path, options);
+  refuse_unused_options(format.about, options);
+  return open_rows(format, path, options);
 }
 
 // What the user knows of the channels and the log does not say.
@@ -323,11 +330,26 @@ struct Watch final : BlockSink {
   std::vector<std::vector<double>> scaled;
 };
 
+void check_numbers(const ReadOptions& options) {
+  if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
+    throw Error({ErrorKind::usage,
+                 "E0201",
+                 "`rate_hz`",
+                 "the rate must be a positive number of hertz, from 1e-9 to 1e12",
+                 shortest(*options.rate_hz)});
+  if (options.from_s && options.to_s && !(*options.from_s < *options.to_s))
+    throw Error({ErrorKind::usage,
+                 "E0201",
+                 "`to_s`",
+                 "the window is empty: `to_s` does not lie after `from_s`"});
+}
+
 }  // namespace
 
 LogInfo read_log_head(const std::string& log, const ReadOptions& options) {
+  check_numbers(options);
   const std::string path = named_log_file(log);
-  LogInfo info = open_rows(format_of(path, options), path, options)->info();
+  LogInfo info = open_log(path, options)->info();
   dress_channels(info.channels, options, nullptr);
   warn_of_unused(info.channels, options, info.warnings);
   warn_of_units(options, info.warnings);
@@ -352,15 +374,6 @@ LogInfo log_listing(const std::string& log, const ReadOptions& options) {
 }
 
 namespace {
-
-void check_rate_option(const ReadOptions& options) {
-  if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "`rate_hz`",
-                 "the rate must be a positive number of hertz, from 1e-9 to 1e12",
-                 shortest(*options.rate_hz)});
-}
 
 /// What the grid of instants knows better than the head of the log.
 void take_grid(const LogInfo& known, LogInfo& info) {
@@ -466,11 +479,11 @@ LogInfo read_rows(const std::string& path,
                   std::uint64_t end,
                   BlockSink& sink,
                   ChannelRange channels) {
-  check_rate_option(options);
+  check_numbers(options);
   ReadOptions whole = options;
   whole.from_s = whole.to_s = std::nullopt;
   whole.hash = false;
-  const auto source = open_rows(format_of(path, whole), path, whole);
+  const auto source = open_log(path, whole);
   std::string why_not = why_no_rows(source->info());
   if (why_not.empty() && !source->restrict_rows(first, end, channels))
     why_not = fmt::format("its rows have no fixed places ({})", source->info().format);
@@ -503,9 +516,9 @@ LogInfo read_log(const std::string& log,
                  const ReadOptions& options,
                  BlockSink& sink,
                  Progress& progress) {
-  check_rate_option(options);
+  check_numbers(options);
   const std::string path = named_log_file(log);
-  const auto source = open_rows(format_of(path, options), path, options);
+  const auto source = open_log(path, options);
   Findings warnings;
   Watch watch(sink, options);
   TimeGrid grid(*source, options, watch, warnings);
@@ -573,7 +586,7 @@ StampedRows read_stamped_rows(const std::string& log,
                               const ReadOptions& options,
                               Progress& progress) {
   const std::string path = named_log_file(log);
-  const auto source = open_rows(format_of(path, options), path, options);
+  const auto source = open_log(path, options);
   StampedRows out;
   Findings warnings;
   RowBlock block;

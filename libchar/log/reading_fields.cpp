@@ -1,5 +1,7 @@
 #include "libchar/log/reading_fields.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "libchar/log/formats.hpp"
 
 namespace libchar {
@@ -125,6 +127,15 @@ const Fields<ReadOptions>& reading_fields() {
     return all;
   }();
   return rows;
+}
+
+std::vector<std::string> options_given(const ReadOptions& options) {
+  static const auto usual = document_of(reading_fields(), ReadOptions{});
+  const auto now = document_of(reading_fields(), options);
+  std::vector<std::string> out;
+  for (const auto& [key, value] : now.items())
+    if (!usual.contains(key) || usual[key] != value) out.push_back(key);
+  return out;
 }
 
 }  // namespace libchar

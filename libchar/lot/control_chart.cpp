@@ -22,6 +22,8 @@ namespace libchar {
 
 namespace {
 
+constexpr double kChartAlarm = 0.01;
+
 constexpr double kValuesToAnySignal = 91.75;
 constexpr double kRangeDof = 0.62;
 

@@ -44,8 +44,6 @@ struct ZoneFindings {
   const ZoneFinding& of(ZoneRule one) const { return rule[static_cast<std::size_t>(one)]; }
 };
 
-inline constexpr double kChartAlarm = 0.01;
-
 /// `sigma` > 0 as of `control_chart`: estimated from as many values.
 ZoneFindings zone_findings(std::span<const double> values, double centre, double sigma);
 

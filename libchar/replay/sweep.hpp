@@ -13,15 +13,11 @@ struct Sweep {
   std::vector<double> values;
 };
 
-inline constexpr std::size_t kMostSweepValues = 100;
-
 /// "minque.gamma=0.99", "minque.gamma=.9,.99,.999", "perceptron.neurons=3..30" (whole numbers, all
 /// of up to twelve, else twelve at about equal ratios). `where` is the option of the command line,
 /// for messages. Throws Error(usage): another form, an unknown algorithm or option, a value out of
 /// range, more than `most` values.
-Sweep parse_sweep(const std::string& text,
-                  const std::string& where,
-                  std::size_t most = kMostSweepValues);
+Sweep parse_sweep(const std::string& text, const std::string& where, std::size_t most = 100);
 
 /// Every algorithm of the list that is swept stands there once for each combination of the values;
 /// one that is not in the list is added.

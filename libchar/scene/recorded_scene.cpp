@@ -70,8 +70,8 @@ struct Chosen {
 
 // Spelled otherwise is the same unit.
 bool same_unit(const std::string& a, const std::string& b) {
-  const auto x = find_unit(a), y = find_unit(b);
-  return a == b || (x && y && x->quantity == y->quantity && x->to_si == y->to_si);
+  const bool known = find_unit(a) && find_unit(b);
+  return a == b || (known && unit_factor(a, b) == 1);
 }
 
 // Names first: a pattern for the sensors leaves the reference out.

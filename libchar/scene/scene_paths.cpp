@@ -7,6 +7,7 @@
 #include <set>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/utf8.hpp"

@@ -24,7 +24,7 @@ void check_cells(std::uint64_t samples, const Layout& layout) {
   if (layout.segment > samples)
     refuse(fmt::format(
                "a segment of {} samples is longer than the record of {}", layout.segment, samples),
-           "");
+           fmt::format("the longest that fits has {}", samples));
   const double cells =
       static_cast<double>(layout.count(samples)) * static_cast<double>(layout.segment / 2 + 1);
   if (cells * sizeof(double) > kMostCellBytes)

@@ -219,16 +219,17 @@ std::uint64_t segment_samples(double seconds, double rate_hz) {
                  got,
                  "give `rate_hz`, or a number of samples"});
   const double samples = std::round(seconds * rate_hz);
-  if (!(samples >= kShortestSegment && samples < 1e12))
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "`segment`",
-                 fmt::format("at {} Hz this is {} samples, and a segment needs at least {}",
-                             brief_text(rate_hz, 6),
-                             brief_text(samples, 6),
-                             kShortestSegment),
-                 got});
-  return static_cast<std::uint64_t>(samples);
+  const bool few = samples < kShortestSegment;
+  if (!few && samples <= kLongestSegment) return static_cast<std::uint64_t>(samples);
+  throw Error({ErrorKind::usage,
+               "E0201",
+               "`segment`",
+               fmt::format("at {} Hz this is {} samples, and a segment {} {}",
+                           brief_text(rate_hz, 6),
+                           brief_text(samples, 6),
+                           few ? "needs at least" : "has at most",
+                           few ? kShortestSegment : kLongestSegment),
+               got});
 }
 
 }  // namespace libchar

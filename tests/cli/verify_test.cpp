@@ -131,6 +131,38 @@ TEST_CASE("verify --rerun: a document is no order") {
                          "--output",
                          other};
   std::ofstream(report) << document.dump();
-  CHECK(test::run({"verify", bench.out, "--rerun", (bench.folder / "third").string()}).code == 0);
+  // No command that ran names its folder twice.
+  CHECK(test::run({"verify", bench.out, "--rerun", (bench.folder / "third").string()}).code == 2);
   CHECK_FALSE(files::exists(other));
+}
+
+TEST_CASE("verify --rerun: words count as their verb understands them") {
+  const VerifyBench bench;
+  const files::path report = files::path(bench.out) / "report.json";
+  const auto original = libchar::parse_json(test::slurp(report), "report");
+  const std::string other = (bench.folder / "other").string();
+  const std::string again = (bench.folder / "again").string();
+  const auto rerun = [&](const std::vector<std::string>& words,
+                         const std::vector<std::string>& more) {
+    auto document = original;
+    document["command"] = {"sensorchar", "characterize", bench.log, "-c", "gyro_z"};
+    for (const std::string& word : words) document["command"].push_back(word);
+    std::ofstream(report) << document.dump();
+    std::vector<std::string> command = {"verify", bench.out, "--rerun", again};
+    command.insert(command.end(), more.begin(), more.end());
+    const auto ran = test::run(command);
+    files::remove_all(again);
+    CHECK_FALSE(files::exists(other));
+    return ran;
+  };
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"-qo" + other}, {"--output=" + other}, {"--force=true", "-o", other}, {"-fo", other}})
+    rerun(words, {});
+  // A last word that takes a value does not swallow the folder.
+  for (const char* last : {"--units", "--preset", "--topic"}) CHECK(rerun({last}, {}).code == 2);
+  const auto elsewhere = rerun({"-o", other, "--limits", "/etc/hostname"}, {});
+  CHECK(elsewhere.code == 2);
+  CHECK_THAT(elsewhere.err, Contains("E0523") && Contains("/etc/hostname"));
+  CHECK_THAT(rerun({"-o", other, "--limits", "/etc/hostname"}, {"--allow-read"}).err,
+             !Contains("E0523"));
 }

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

@@ -61,6 +61,7 @@ Json option_json(const OptionUsage& option) {
           {"repeatable", option.repeatable},
           {"group", option.group},
           {"help", option.help},
+          {"only", option.only},
           {"excludes", option.excludes}};
 }
 

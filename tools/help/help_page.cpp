@@ -61,6 +61,7 @@ std::string help_rows(const std::vector<HelpRow>& rows, std::size_t width) {
 std::string option_text(const OptionUsage& option) {
   std::string text = option.help;
   if (option.required && !option.flags.empty()) text += " (required)";
+  if (!option.only.empty()) text += fmt::format(" (only {})", option.only);
   if (!option.excludes.empty())
     text += fmt::format(" (not with {})", fmt::join(option.excludes, ", "));
   return text;

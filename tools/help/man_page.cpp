@@ -64,6 +64,7 @@ std::string option_entry(const OptionUsage& option) {
   if (!option.name.empty()) tag += (tag.empty() ? "" : " ") + breakable(italic(option.name));
   std::string text = roff(option.help);
   if (option.required && !option.flags.empty()) text += " (required)";
+  if (!option.only.empty()) text += roff(fmt::format(" (only {})", option.only));
   if (!option.excludes.empty())
     text += roff(fmt::format(" (not with {})", fmt::join(option.excludes, ", ")));
   if (option.kind == ValueKind::words && option.name.find('|') == std::string::npos &&

@@ -20,6 +20,7 @@ struct OptionUsage {
   bool required = false, repeatable = false;
   std::string group;                  ///< heading in the help, "" for the verb's own
   std::string help;                   ///< what it does, unit, default
+  std::string only;                   ///< where it has an effect ("with --curve"), "" everywhere
   std::vector<std::string> excludes;  ///< flags that it does not go with
 };
 

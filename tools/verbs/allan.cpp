@@ -34,8 +34,8 @@ struct AllanVerb {
 DynamicTimes read_dynamic(const std::string& text) {
   const std::size_t comma = text.find(',');
   DynamicTimes times;
-  times.window_s = parse_duration_s(text.substr(0, comma));
-  if (comma != std::string::npos) times.step_s = parse_duration_s(text.substr(comma + 1));
+  times.window_s = parse_duration_s(text.substr(0, comma), true);
+  if (comma != std::string::npos) times.step_s = parse_duration_s(text.substr(comma + 1), true);
   return times;
 }
 
@@ -132,6 +132,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
     text = allan_csv(channels, curves);
   }
   if (verb.output.empty()) return print(text);
+  refuse_strict(session);
   write_whole_file(verb.output, text, verb.force);
 }
 
@@ -169,6 +170,10 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
   add_data_options(options, verb->analysis);
   verb->analysis.several_types = true;
   add_allan_options(options, verb->analysis);
+  options.only(
+      "without --hat, --hat-pairs and --dynamic",
+      [verb = verb.get()] { return !verb->hat && !verb->hat_of_differences && !verb->dynamic; },
+      {"--unwrap", "--frozen", "--memory"});
   return [&session, verb] {
     verb->analysis.options.reading.hash = verb->json;  // only the document states it
     run_allan(session, *verb);

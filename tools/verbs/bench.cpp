@@ -234,7 +234,9 @@ void run_bench(Session& session, BenchVerb& verb) {
       out.push_back((std::filesystem::path(verb.folder) / name).string());
     return out;
   };
-  if (!verb.folder.empty()) check_outputs(foreseen(), verb.folder, verb.files, verb.force);
+  std::vector<std::string> inputs_named = verb.files;
+  if (!verb.against.empty()) inputs_named.push_back(verb.against);
+  if (!verb.folder.empty()) foresee_outputs(foreseen(), verb.folder, inputs_named, verb.force);
   const BenchReport older =
       verb.against.empty() ? BenchReport{}
                            : parse_bench_report(read_document_text(verb.against), verb.against);
@@ -252,7 +254,8 @@ void run_bench(Session& session, BenchVerb& verb) {
                  "other files, or other parts"});
   std::vector<std::string> removed;
   if (!verb.folder.empty())
-    removed = write_outputs(bench_files(report, verb.folder), verb.folder, verb.files, verb.force);
+    removed =
+        write_outputs(bench_files(report, verb.folder), verb.folder, inputs_named, verb.force);
   Json document = document_of(bench_fields(), report);
   const double tolerance = verb.tolerance.value_or(5) / 100;
   std::optional<BenchChanges> changes;
@@ -362,6 +365,8 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
       .value_name("SWEEP");
   add_design_options(options, *verb);
   add_comparison_options(options, *verb);
+  options.only(
+      "with --against", [verb = verb.get()] { return !verb->against.empty(); }, {"--tolerance"});
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print bench.json to stdout instead of the tables");
   add_reading_options(options, session, verb->inputs.reading);

@@ -133,6 +133,7 @@ void run_one_by_one(Session& session,
   for (const std::string& log : verb.logs) {
     const Characterization result = characterized(session, verb, options, limits, log, outcome);
     const CharacterizationView view = characterization_view(result);
+    refuse_strict(session);
     const fs::path folder = folder_for(verb, log, taken);
     const std::vector<OutputFile> outputs = report_files(view, folder);
     const auto removed = write_outputs(outputs, folder, inputs_of(verb), verb.force);
@@ -191,6 +192,7 @@ std::vector<Characterization> all_characterized(Session& session,
   std::vector<Characterization> results;
   for (const std::string& log : verb.logs)
     results.push_back(characterized(session, verb, options, limits, log, outcome));
+  refuse_strict(session);
   return results;
 }
 
@@ -321,8 +323,9 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
                 verb->folder,
                 "folder for the results (made when absent; with several logs one folder each "
                 "inside; default: LOG-report)")
-      .value_name("DIR");
-  options.add_flag("--force", verb->force, "overwrite results of an earlier run");
+      .value_name("DIR")
+      .writes();
+  options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
   options.add_flag("--no-timing",
                    verb->no_timing,
@@ -353,6 +356,9 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
                 "compare the LOGs as devices side by side, as fleet merge does: mean and spread of "
                 "each term, outliers, overlaid curves (index.html, lot.json, coefficients.csv)")
       .excludes(pool);
+  options.only("with --verify or --pool",
+               [verb = verb.get()] { return verb->verify || verb->pool; },
+               {"--seed"});
   add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_characterize(session, *verb); };
 }

@@ -82,7 +82,7 @@ std::function<void()> convert_options(VerbOptions& options, Session& session) {
                     "; - is standard output)")
       .required()
       .value_name("FILE");
-  add_writing_options(options, verb->writing, "t[s] or t[ns]");
+  add_writing_options(options, verb->writing, "t[s] or t[ns]", verb->output);
   options.add_flag("--force", verb->writing.options.overwrite, "overwrite an existing file");
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   add_reading_options(options, session, verb->reading);

@@ -99,25 +99,16 @@ void foresee_models(const FitVerb& verb) {
     for (const Channel& channel : read_log_head(verb.input, verb.analysis.options.reading).channels)
       models.push_back(model_path(verb, channel, taken));
   }
+  if (!verb.output.empty()) {
+    std::vector<std::string> all = models;
+    all.push_back(verb.output);
+    all.push_back((std::filesystem::path(verb.models) / "any.sensor.yaml").string());
+    refuse_one_name(all);
+  }
   foresee_outputs(models, verb.models, {verb.input}, verb.force);
 }
 
-// A curve has neither samples nor times.
-void refuse_with_curve(const FitVerb& verb) {
-  const CharacterizeOptions& o = verb.analysis.options;
-  if (verb.curve == "none") return;
-  const bool still = o.still.search || o.still.stretch_s;
-  if (still || !o.temperature.empty())
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 still ? "--still" : "--temperature",
-                 "goes with a recording, not with --curve",
-                 "",
-                 ""});
-}
-
 void run_fit(Session& session, const FitVerb& verb) {
-  refuse_with_curve(verb);
   refuse_standard_output("--models", verb.models);
   foresee_output(verb.output, {verb.input}, verb.force);
   if (!verb.models.empty()) foresee_models(verb);
@@ -135,6 +126,7 @@ void run_fit(Session& session, const FitVerb& verb) {
                  log.time.rate_hz > 0
                      ? ""
                      : "the sampling rate is not known: a log without time stamps needs --rate"});
+  if (!verb.output.empty() || !verb.models.empty()) refuse_strict(session);
   std::string text;
   if (verb.json) {
     Json document = document_head(session, "noise-fit", {&log});
@@ -169,6 +161,30 @@ void run_fit(Session& session, const FitVerb& verb) {
            "",
            ""});
   }
+}
+
+/// A curve has neither samples nor times, and a recording has no quantity.
+void add_only(VerbOptions& options, const FitVerb& verb) {
+  options.only("with --curve", [&verb] { return verb.curve != "none"; }, {"--quantity"});
+  options.only("with --curve psd", [&verb] { return verb.curve == "psd"; }, {"--sides"});
+  options.only("with --curve allan", [&verb] { return verb.curve == "allan"; }, {"--duration"});
+  options.only("with a recording, not with --curve",
+               [&verb] { return verb.curve == "none"; },
+               {"--still",
+                "--temperature",
+                "--data",
+                "--nominal-frequency",
+                "--unwrap",
+                "--frozen",
+                "--memory",
+                "--no-second-opinion",
+                "--no-remedies",
+                "--from",
+                "--to",
+                "--topic",
+                "--time-source",
+                "--time-column",
+                "--time-unit"});
 }
 
 std::function<void()> fit_options(VerbOptions& options, Session& session) {
@@ -208,6 +224,7 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
   add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   add_fit_options(options, verb->analysis);
+  add_only(options, *verb);
   return [&session, verb] {
     verb->analysis.options.reading.hash =
         verb->json || !verb->models.empty();  // only these state it

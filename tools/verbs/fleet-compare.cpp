@@ -116,7 +116,7 @@ void run_compare_fleets(Session& session, const CompareFleetsVerb& verb) {
   const std::vector<std::string> batches = batches_of(verb.batches);
   const bool two = verb.fleets.size() == 2;
   if (verb.fleets.size() > 2 || (two ? !batches.empty() : batches.size() != 2)) refuse_sides();
-  foresee_output(verb.output, {}, verb.force);
+  foresee_output(verb.output, verb.fleets, verb.force);
   Sides sides = two ? sides_of_fleets(session, verb.fleets)
                     : sides_of_batches(session, verb.fleets[0], batches);
   if (verb.false_alarm) sides.options.false_alarm = *verb.false_alarm;

@@ -92,7 +92,7 @@ std::string name_of_fleets(const MergeVerb& verb) {
 
 void run_merge(Session& session, const MergeVerb& verb) {
   refuse_standard_output("--output", verb.folder);
-  foresee_outputs(fleet_report_files(verb.folder), verb.folder, {}, verb.force);
+  foresee_outputs(fleet_report_files(verb.folder), verb.folder, verb.fleets, verb.force);
   const Merged fleet = merged(session, verb);
   const FleetLot lot = fleet_lot(fleet.records, fleet.options);
   FleetReport report;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/report/replay/fuse_report.hpp"
 #include "reading_options.hpp"
@@ -42,7 +43,7 @@ void run_fuse(Session& session, FuseVerb& verb) {
   add_map(verb, verb.options);
   take_standard_output(verb.output, verb.writing, verb.json);
   const libchar::LearntFusion learnt = libchar::read_fusion_file(verb.with);
-  for (const std::string& input : {verb.log, learnt.file})
+  for (const std::string& input : {verb.log, verb.with, learnt.file})
     for (const char* suffix : {"", ".json"}) libchar::refuse_same_file(input, verb.output + suffix);
   libchar::check_log_output(verb.output, write_options(verb.writing));
   libchar::ColumnWriter writer(verb.output, write_options(verb.writing));
@@ -85,12 +86,13 @@ std::function<void()> fuse_options(VerbOptions& options, Session& session) {
                  "channel of a sensor where it is not that of the replay, SENSOR=CHANNEL")
       .separated_by_commas()
       .one_value_each()
-      .value_name("SENSOR=CHANNEL,…");
-  options.add_duration("--fault-free",
-                       verb->options.fault_free_s,
-                       "so long no sensor fails at the start of this log (default: not known, but "
-                       "of the log of the replay)");
-  add_writing_options(options, verb->writing, "t[s] or t[ns]");
+      .value_name("SENSOR=CHANNEL,…")
+      .once_each();
+  options.add_instant("--fault-free",
+                      verb->options.fault_free_s,
+                      "so long no sensor fails at the start of this log (default: not known, but "
+                      "of the log of the replay)");
+  add_writing_options(options, verb->writing, "t[s] or t[ns]", verb->output);
   options.add_flag("--force", verb->writing.options.overwrite, "overwrite an existing file");
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   add_reading_options(options, session, verb->options.reading);

@@ -164,7 +164,8 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
          "what a channel is, when its name and unit do not say: gx … gz, ax … az, mx … mz; g, "
          "a, m alone for all three axes")
       .value_name("CHANNEL=PLACE")
-      .one_value_each();
+      .one_value_each()
+      .once_each();
   sub.add_number("--inflate", options.inflate, "multiply every noise number (1)", kSmall);
   sub.add_number(
       "--floor-tau",
@@ -207,6 +208,25 @@ std::vector<std::string> target_words() {
   return words;
 }
 
+/// What a target cannot write has no effect on it.
+void add_only(VerbOptions& options, const ModelVerb& verb) {
+  options.only(
+      "with --to", [&verb] { return !verb.target.empty(); }, {"--axes", "--axis", "--anyway"});
+  const auto takes = [&](bool ExportTakes::*what, const std::vector<std::string>& flags) {
+    const auto taken = [&verb, what] {
+      return !verb.target.empty() && find_export_target(verb.target).takes.*what;
+    };
+    options.only("with --to " + targets_that_take(what), taken, flags);
+  };
+  takes(&ExportTakes::inflate, {"--inflate"});
+  takes(&ExportTakes::gauss_markov, {"--floor-tau", "--correlation-time"});
+  takes(&ExportTakes::bias_tau, {"--airsim-tau"});
+  takes(&ExportTakes::filter_step, {"--filter-step"});
+  takes(&ExportTakes::gravity, {"--gravity"});
+  takes(&ExportTakes::topic, {"--topic"});
+  takes(&ExportTakes::older, {"--older"});
+}
+
 std::function<void()> model_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ModelVerb>();
   options.add_texts("FILE",
@@ -216,11 +236,12 @@ std::function<void()> model_options(VerbOptions& options, Session& session) {
   options.add_text("--to", verb->target, "target; --list names them")
       .value_name("NAME")
       .known_words(target_words());
-  options.add_flag("--list", verb->list, "the targets, each with its convention");
+  options.add_flag("--list", verb->list, "the targets, each with its convention").alone();
   options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite the output file");
   options.add_flag("--json", verb->json, "one JSON document instead of text");
   add_choices(options, *verb);
+  add_only(options, *verb);
   return [&session, verb] { run_model(session, *verb); };
 }
 

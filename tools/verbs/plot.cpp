@@ -97,14 +97,26 @@ void refuse_nothing_asked(const PlotVerb& verb) {
         {ErrorKind::usage, "E0205", "plot", "only one output can go to standard output", "", ""});
 }
 
+/// Those of a folder get their names together.
+void write_together(const std::vector<OutputFile>& outputs, bool overwrite) {
+  std::vector<WholeFile> files;
+  for (const OutputFile& output : outputs)
+    if (output.path != "-") files.emplace_back(output.path, overwrite).write(output.text);
+  std::vector<WholeFile*> all;
+  for (WholeFile& file : files) all.push_back(&file);
+  if (!all.empty()) commit_together(all);
+}
+
 void deliver(const std::vector<OutputFile>& made, bool force) {
-  std::vector<OutputFile> files;
-  for (const OutputFile& one : made)
-    if (one.path != "-") files.push_back(one);
-  for (const OutputFile& one : files) check_output(one.path, force);
-  for (const OutputFile& one : files) write_whole_file(one.path, one.text, force);
+  write_together(made, force);
   for (const OutputFile& one : made)
     if (one.path == "-") print(one.text);
+}
+
+/// Those that are given.
+std::vector<std::string> named(std::vector<std::string> paths) {
+  std::erase(paths, "");
+  return paths;
 }
 
 void run_plot(Session& session, PlotVerb& verb) {
@@ -117,6 +129,7 @@ void run_plot(Session& session, PlotVerb& verb) {
   const FigureFormat format = verb.output.empty() ? FigureFormat::svg : format_of(verb);
   for (const std::string* path : {&verb.output, &verb.gnuplot, &verb.csv})
     if (!path->empty() && *path != "-") foresee_output(*path, verb.files, verb.force);
+  refuse_one_name(named({verb.output, verb.gnuplot, verb.csv}));
   std::vector<FigureSource> sources;
   for (const std::string& file : verb.files) sources.push_back(read_figure_source(file));
   const Chart figure = make_figure(sources, verb.figure);
@@ -151,6 +164,17 @@ void add_looks(VerbOptions& options, PlotVerb& verb) {
   options.add_text("--y-range", verb.y_range, "ends of the vertical axis").value_name("LOW..HIGH");
 }
 
+/// The table has numbers alone, the script all that belongs to the figure but its legend and its pixels.
+void add_only(VerbOptions& options, const PlotVerb& verb) {
+  const auto drawn = [&verb] { return !verb.output.empty(); };
+  const auto shown = [&verb] { return !verb.output.empty() || !verb.gnuplot.empty(); };
+  options.only("with -o", drawn, {"--format", "--legend", "--grey"});
+  options.only("with -o or --gnuplot", shown, {"--width", "--height", "--title"});
+  options.only("for a PNG",
+               [&verb] { return !verb.output.empty() && format_of(verb) == FigureFormat::png; },
+               {"--dpi"});
+}
+
 std::function<void()> plot_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<PlotVerb>();
   options.add_texts(
@@ -166,13 +190,14 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
                      verb->figure.kind,
                      figure_words(),
                      "which figure (default: allan of a characterization, front of a replay)");
-  options.add_flag("--list", verb->list, "the figures that there are");
+  options.add_flag("--list", verb->list, "the figures that there are").alone();
   options
       .add_texts(
           "-c,--channel",
           verb->figure.channels,
           "channels (of a replay: methods or sensors) by name or pattern such as 'gyro*' (all)")
-      .separated_by_commas();
+      .separated_by_commas()
+      .once_each();
   options.add_text("--algorithm",
                    verb->figure.algorithm,
                    "of a replay: whose weights, variances and findings (the best that has them)");
@@ -187,6 +212,7 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
   options.add_choice(
       "--format", verb->format, words_of<FigureFormat>(), "what -o is (by its name)");
   options.add_flag("--force", verb->force, "overwrite the output files");
+  add_only(options, *verb);
   return [&session, verb] { run_plot(session, *verb); };
 }
 

@@ -91,7 +91,33 @@ void run_psd(Session& session, const PsdVerb& verb) {
     text = verb.options.lines ? lines_csv(spectra) : spectra_csv(spectra);
   }
   if (verb.output.empty()) return print(text);
+  refuse_strict(session);
   write_whole_file(verb.output, text, verb.force);
+}
+
+/// What each option is for: spectra, lines, a pair, a spectrogram.
+void add_only(VerbOptions& options, const PsdVerb& verb) {
+  const auto single = [&verb] {
+    return verb.cross.empty() && verb.coherence.empty() && verb.spectrogram.empty();
+  };
+  const auto of_table = [&verb] { return !verb.options.lines || verb.json; };
+  options.only("for spectra of single channels", single, {"--average"});
+  options.only("for spectra of single channels, and not with --plot",
+               [&verb, single] { return single() && !verb.plot; },
+               {"--lines"});
+  options.only("for spectra of single channels, and not for a table of --lines",
+               [single, of_table] { return single() && of_table(); },
+               {"--log-bins"});
+  options.only(
+      "for spectra of single channels and spectrograms, and not for a table of --lines",
+      [&verb, of_table] { return verb.cross.empty() && verb.coherence.empty() && of_table(); },
+      {"--scaling"});
+  options.only("without --coherence, and not for a table of --lines",
+               [&verb, of_table] { return verb.coherence.empty() && of_table(); },
+               {"--sides"});
+  options.only("without --spectrogram, which says it itself",
+               [&verb] { return verb.spectrogram.empty(); },
+               {"--segment"});
 }
 
 std::function<void()> psd_options(VerbOptions& options, Session& session) {
@@ -148,6 +174,7 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
       "average into at most N bins of a logarithmic frequency axis (default: 0, do not)",
       0,
       1000000);
+  add_only(options, *verb);
   add_reading_options(options, session, verb->options.reading);
   return [&session, verb] {
     verb->options.reading.hash = verb->json;  // only the document states it

@@ -169,7 +169,12 @@ void write_scene(const Session& session,
                  const std::vector<std::string>& inputs) {
   const fs::path folder = fs::path(verb.scene_file).parent_path();
   write_outputs({{verb.scene_file, scene_yaml(scene)}}, folder, inputs, verb.force);
-  if (!verb.json) print_beside(session, fmt::format("wrote {}\n", printable(verb.scene_file)));
+  if (!verb.json)
+    return print_beside(session, fmt::format("wrote {}\n", printable(verb.scene_file)));
+  if (!verb.folder.empty()) return;  // its report is the one document
+  Json document = document_head(session, "scene-written", {});
+  document["scene"] = printable(verb.scene_file);
+  print(dump_json(document));
 }
 
 // The log fused by what is recommended; "" where nothing is, or where there is no log.
@@ -208,6 +213,7 @@ void run_and_report(Session& session,
   result.settings = settings_of(verb, result);
   session.terminal.warn(result.warnings, verb.source.path);
   for (const LogInfo& log : result.logs) report_warnings(session, log);
+  refuse_strict(session);
   const ReplayView view = replay_view(result);
   Json document = replay_json(view);
   std::vector<OutputFile> outputs = {{files[0], replay_html(view)},
@@ -240,6 +246,15 @@ void print_algorithms(const Session& session, bool json) {
   print(dump_json(document));
 }
 
+std::vector<std::string> outputs_of(const ReplayVerb& verb) {
+  std::vector<std::string> out = {verb.scene_file};
+  for (const char* name : {"report.html", "report.json", "report.md", "fusion.yaml"})
+    out.push_back((fs::path(verb.folder) / name).string());
+  if (!verb.estimates.empty())
+    out.push_back((fs::path(verb.folder) / ("estimates." + verb.estimates)).string());
+  return out;
+}
+
 void run_replay(Session& session, ReplayVerb verb) {
   if (verb.list) return print_algorithms(session, verb.json);
   if (verb.source.path.empty())
@@ -255,6 +270,7 @@ void run_replay(Session& session, ReplayVerb verb) {
                          "name a file");
   std::vector<std::string> inputs = scene.files;
   inputs.push_back(verb.source.path);
+  if (!verb.scene_file.empty() && !verb.folder.empty()) refuse_one_name(outputs_of(verb));
   if (!verb.scene_file.empty())
     check_outputs({verb.scene_file}, fs::path(verb.scene_file).parent_path(), inputs, verb.force);
   if (!verb.folder.empty()) run_and_report(session, verb, scene, inputs);
@@ -268,6 +284,17 @@ std::vector<std::string> algorithm_names() {
   return names;
 }
 
+/// A plan writes nothing, and a scene says nothing of how it is replayed.
+void add_only(VerbOptions& options, const ReplayVerb& verb) {
+  const auto runs = [&verb] { return !verb.folder.empty() && !verb.explain; };
+  options.only(
+      "without --explain", [&verb] { return !verb.explain; }, {"--output", "--write-scene"});
+  options.only("with -o", runs, {"--estimates", "--no-timing", "--window", "--no-allan"});
+  options.only("with -o or --explain",
+               [&verb] { return !verb.folder.empty() || verb.explain; },
+               {"--budget", "--no-skip"});
+}
+
 std::function<void()> replay_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReplayVerb>();
   add_replay_source(options, session, verb->source);
@@ -275,16 +302,19 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
       .add_text("-o,--output",
                 verb->folder,
                 "folder for the results, made when absent (default: LOG-replay)")
-      .value_name("DIR");
+      .value_name("DIR")
+      .writes();
   options
       .add_texts("--algorithms",
                  verb->algorithms,
                  "run these only (default: the scene's, else all that it has the data for)")
       .separated_by_commas()
+      .once_each()
       .value_name("NAME,…")
       .known_words(algorithm_names());
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
-      .value_name("SETTING");
+      .value_name("SETTING")
+      .once_each();
   options
       .add_texts("--sweep",
                  verb->sweeps,
@@ -295,18 +325,19 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   options.add_duration("--window",
                        verb->window_s,
                        "length of the window RMS (default: a fiftieth of the evaluation)");
-  options.add_duration("--budget",
-                       verb->budget_s,
-                       "processor time that leave-one-out of one algorithm may take, counted by "
-                       "its declared cost; beyond, "
-                       "it runs on stretches or not at all (default: 10 s)");
+  options.add_instant("--budget",
+                      verb->budget_s,
+                      "processor time that leave-one-out of one algorithm may take, counted by "
+                      "its declared cost; beyond, "
+                      "it runs on stretches or not at all (default: 10 s)");
   options.add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
   options
       .add_text("--estimates",
                 verb->estimates,
                 "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
       .value_name("FORMAT");
-  options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options");
+  options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options")
+      .alone();
   options.add_flag("--explain",
                    verb->explain,
                    "print the plan: what would be read, learnt, run, skipped and why");
@@ -322,9 +353,11 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
           verb->scene_file,
           "write all that was said as a scene file, which replays to the same results; without "
           "-o nothing else is done")
+      .writes()
       .value_name("FILE");
-  options.add_flag("--force", verb->force, "overwrite results of an earlier run");
+  options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the table");
+  add_only(options, *verb);
   return [&session, verb] { run_replay(session, *verb); };
 }
 

@@ -54,14 +54,19 @@ std::function<void()> report_options(VerbOptions& options, Session& /*session*/)
                 "report.json of characterize or replay (runs.json of pooled runs, what fit --json "
                 "prints), or the folder that holds it")
       .required();
-  options.add_flag("--markdown", verb->markdown, "a table of Markdown (the default)");
+  const Option markdown =
+      options.add_flag("--markdown", verb->markdown, "a table of Markdown (the default)");
   const Option latex =
-      options.add_flag("--latex", verb->latex, "a tabular of LaTeX, which needs no package");
-  options.add_flag("--csv", verb->csv, "a column a number, all digits").excludes(latex);
+      options.add_flag("--latex", verb->latex, "a tabular of LaTeX, which needs no package")
+          .excludes(markdown);
+  options.add_flag("--csv", verb->csv, "a column a number, all digits")
+      .excludes(latex)
+      .excludes(markdown);
   options
       .add_texts(
           "-c,--channel", verb->channels, "channels by name or pattern such as 'gyro*' (all)")
-      .separated_by_commas();
+      .separated_by_commas()
+      .once_each();
   options.add_text("-o,--output", verb->output, "write there instead of to stdout")
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");

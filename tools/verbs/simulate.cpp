@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -10,9 +11,13 @@
 
 #include "help/fault_help.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/finding.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/log/write.hpp"
@@ -36,6 +41,7 @@ using namespace libchar;
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostDevices = 10000;
+constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 50U;
 
 struct SimulateVerb {
   std::vector<std::string> sources;
@@ -66,12 +72,36 @@ void set_length(const SimulateVerb& verb, ArraySimulation& simulation) {
                     "give --rate");
   if (verb.samples > 0 && verb.duration_s)
     refuse_simulate("--samples", "does not go with --duration", "", "give one of them");
-  if (verb.samples > 0) simulation.samples = verb.samples;
+  if (verb.samples > 0) simulation.samples = std::min(verb.samples, kMostSamples);
   if (verb.duration_s)
-    simulation.samples =
-        static_cast<std::uint64_t>(std::llround(*verb.duration_s * simulation.rate_hz));
+    simulation.samples = clamped_whole<std::uint64_t>(
+        std::round(*verb.duration_s * simulation.rate_hz), 0, kMostSamples);
   if (simulation.samples == 0)
     refuse_simulate("simulate", "for how long?", "", "give --duration or --samples");
+  if (simulation.samples == kMostSamples)
+    refuse_simulate(verb.duration_s ? "--duration" : "--samples",
+                    "more samples than a recording can have are asked for",
+                    "",
+                    "at most 1125899906842623");
+}
+
+// A file of so many samples takes two bytes for each value at least.
+void refuse_beyond_disk(const SimulateVerb& verb, const ArraySimulation& simulation) {
+  if (writes_through(verb.output)) return;
+  std::error_code unknown;
+  const fs::path folder = fs::absolute(verb.output).parent_path();
+  const fs::space_info space = fs::space(folder, unknown);
+  const double bytes = 2.0 * static_cast<double>(simulation.samples) *
+                       static_cast<double>(simulation.sensors.size());
+  if (!unknown && bytes > static_cast<double>(space.available))
+    throw Error({ErrorKind::output,
+                 "E0524",
+                 verb.output,
+                 fmt::format("would take {} at least, and {} are free there",
+                             bytes_text(clamped_whole<std::uint64_t>(bytes, 0, kMostSamples)),
+                             bytes_text(space.available)),
+                 "",
+                 "fewer samples, another disk, or -o - into a program"});
 }
 
 // A recorded signal is read after the faults have been understood: that may take a while.
@@ -86,6 +116,21 @@ void read_recorded(const SimulateVerb& verb,
   read_recorded_signal(signal, option, simulation, warnings);
 }
 
+// One signal is put into all sensors.
+void refuse_mixed_units(const ArraySimulation& simulation) {
+  const SimulatedSensor& first = simulation.sensors.front();
+  for (const SimulatedSensor& other : simulation.sensors)
+    if (unit_factor(first.model.unit, other.model.unit) != 1)
+      refuse_simulate("--truth",
+                      fmt::format("is one signal, and {} is in {}, {} in {}",
+                                  printable(first.name, 40),
+                                  printable(first.model.unit, 40),
+                                  printable(other.name, 40),
+                                  printable(other.model.unit, 40)),
+                      "",
+                      "simulate sensors of one unit together");
+}
+
 void set_signals(const SimulateVerb& verb, ArraySimulation& simulation) {
   if (!verb.truth.empty() && simulation.truth_names.size() != 1)
     refuse_simulate(
@@ -93,7 +138,10 @@ void set_signals(const SimulateVerb& verb, ArraySimulation& simulation) {
         fmt::format("is one signal, and the scene has {}", simulation.truth_names.size()),
         "",
         "change them in the scene");
-  if (!verb.truth.empty()) simulation.truth = {parse_signal(verb.truth, "--truth")};
+  if (!verb.truth.empty()) {
+    refuse_mixed_units(simulation);
+    simulation.truth = {parse_signal(verb.truth, "--truth")};
+  }
   if (!verb.temperature.empty())
     simulation.temperature = parse_signal(verb.temperature, "--temperature");
 }
@@ -108,6 +156,7 @@ void add_faults(const SimulateVerb& verb, ArraySimulation& simulation) {
 // What the command line says on top of models or scene.
 void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& simulation) {
   set_length(verb, simulation);
+  refuse_beyond_disk(verb, simulation);
   if (verb.seed_given) simulation.seed = verb.seed;
   if (verb.oversampling > 1) simulation.oversampling = verb.oversampling;
   simulation.deterministic = verb.deterministic;
@@ -135,6 +184,7 @@ void place_outputs(SimulateVerb& verb, const Scene& scene) {
                     "--no-scene, or --scene FILE");
   std::vector<std::string> outputs = {verb.output};
   if (!verb.no_scene) outputs.push_back(verb.scene_path);
+  refuse_one_name(outputs);
   for (const std::string& source : verb.sources)
     for (const std::string& output : outputs) refuse_same_file(source, output);
   refuse_scene_outputs(scene, outputs);
@@ -197,6 +247,10 @@ void take_standard_output(SimulateVerb& verb) {
 }
 
 void run_simulate(Session& session, SimulateVerb& verb) {
+  refuse_standard_output("--scene",
+                         verb.scene_path,
+                         "a scene names its recording by where it lies beside it",
+                         "name a file");
   take_standard_output(verb);
   const Scene scene = read_source(session, verb);
   ArraySimulation simulation = *scene.simulate;
@@ -289,13 +343,15 @@ std::function<void()> simulate_options(VerbOptions& options, Session& session) {
   add_length_options(options, *verb);
   add_input_options(options, *verb);
   options.add_flag("--no-truth", verb->no_truth, "leave out the columns of the truth");
-  options
-      .add_text("--scene",
-                verb->scene_path,
-                "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
-      .value_name("FILE");
-  options.add_flag("--no-scene", verb->no_scene, "write no scene");
-  add_writing_options(options, verb->writing, "t[s]");
+  const Option scene =
+      options
+          .add_text(
+              "--scene",
+              verb->scene_path,
+              "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
+          .value_name("FILE");
+  options.add_flag("--no-scene", verb->no_scene, "write no scene").excludes(scene);
+  add_writing_options(options, verb->writing, "t[s]", verb->output);
   options.add_flag(
       "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
   options.add_flag("--force", verb->writing.options.overwrite, "overwrite existing files");

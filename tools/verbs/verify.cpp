@@ -23,7 +23,7 @@ using namespace libchar;
 
 struct VerifyVerb {
   std::string results, inputs_in, again;
-  bool json = false;
+  bool json = false, allow_read = false;
 };
 
 std::string check_text(const ResultCheck& check) {
@@ -100,7 +100,7 @@ Json rerun_json(const Rerun& run) {
 
 // What was found, or an error: the numbers of the second run are not those of the first.
 void run_again(Session& session, const VerifyVerb& verb, const std::string& document) {
-  const Rerun run = rerun(session, document, verb.again, verb.inputs_in);
+  const Rerun run = rerun(session, {document, verb.again, verb.inputs_in, verb.allow_read});
   if (verb.json) {
     Json out = document_head(session, "rerun", {});
     out["rerun"] = rerun_json(run);
@@ -167,6 +167,12 @@ std::function<void()> verify_options(VerbOptions& options, Session& session) {
                 "run it again into this new folder, as the report's command says, and compare "
                 "every number")
       .value_name("FOLDER");
+  options.add_flag(
+      "--allow-read",
+      verb->allow_read,
+      "the report's command may read files elsewhere than here (or --in) and beside the report");
+  options.only(
+      "with --rerun", [verb = verb.get()] { return !verb->again.empty(); }, {"--allow-read"});
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   return [&session, verb] { run_verify(session, *verb); };
 }

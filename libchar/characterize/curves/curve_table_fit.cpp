@@ -8,6 +8,7 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/fit/curve/curve_fit.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
+#include "libchar/log/reading_fields.hpp"
 
 namespace libchar {
 namespace {
@@ -72,6 +73,14 @@ Table named_table(const std::string& path, const CurveTable& named, const ReadOp
   table.info.file = path;
   table.info.bytes = named.bytes;
   table.info.sha256 = named.sha256;
+  for (const std::string& option : options_given(reading))
+    if (option != "channels" && option != "units" && option != "rate_hz")
+      throw Error({ErrorKind::usage,
+                   "E0336",
+                   "`" + option + "`",
+                   "has no effect on a table of curves with names",
+                   "",
+                   "leave it out"});
   refuse_unknown(path, named, wanted);
   for (const NamedCurve& n : named.curves) {
     const auto means_it = [&](const std::string& word) { return stands_for(word, n.name); };

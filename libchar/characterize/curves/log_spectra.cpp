@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "libchar/characterize/detail/longest_segment.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
@@ -133,6 +134,8 @@ LogSpectra finished(LogSpectra result, const LogSpectraOptions& options) {
 LogSpectra log_spectra(const std::string& path,
                        const LogSpectraOptions& options,
                        Progress& progress) {
+  refuse_longer_segment(
+      path, options.reading, options.spectrum.segment, options.segment_s, progress);
   if (segment_given(options) && options.average == SegmentAverage::mean)
     return finished(streamed(path, options, progress), options);
   const Recording recording = read_recording(path, options.reading, progress);

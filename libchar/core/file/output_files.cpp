@@ -7,6 +7,7 @@
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
@@ -74,6 +75,52 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
       stale.push_back(name);
   }
   return stale;
+}
+
+/// A file in a folder of results that somebody named: does what is read of it hang on this file?
+bool is_of_results(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::exists(folder / "metadata.yaml", ignored)) return true;  // a recording of rosbag2
+  if (fs::exists(folder / "plan.jsonl", ignored))
+    return file.filename() == "plan.jsonl" || file.parent_path() != folder;
+  if (is_document(file)) return true;
+  for (const auto& entry : fs::directory_iterator(file.parent_path(), ignored)) {
+    if (!is_document(entry.path()) || !entry.is_regular_file(ignored) ||
+        entry.file_size(ignored) >= kMostReportBytes)
+      continue;
+    const std::vector<std::string> names = detail::named_files(entry.path().string());
+    if (std::find(names.begin(), names.end(), file.filename().string()) != names.end()) return true;
+  }
+  return false;
+}
+
+void refuse_itself(const std::string& input, const std::string& output) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(input, ignored) ||
+      !std::filesystem::equivalent(input, output, ignored))
+    return;
+  throw Error({ErrorKind::output,
+               "E0504",
+               output,
+               "is the input itself; an input is never overwritten",
+               "",
+               "choose another name"});
+}
+
+void refuse_in_folder(const std::string& input, const std::string& output) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path folder = fs::canonical(input, ignored), file = fs::canonical(output, ignored);
+  if (folder.empty() || !fs::is_regular_file(file, ignored)) return;
+  const auto apart = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+  if (apart.first != folder.end() || !is_of_results(folder, file)) return;
+  throw Error({ErrorKind::output,
+               "E0504",
+               output,
+               "is part of the input; an input is never overwritten",
+               input,
+               "choose another name"});
 }
 
 std::filesystem::path folder_of(const WholeFile& file) {
@@ -184,6 +231,16 @@ void commit_together(const std::vector<WholeFile*>& files) {
       if (folder_of(*file) == folder) set.push_back(file);
     commit_set(set, folder);
   }
+}
+
+void refuse_same_file(const std::string& input, const std::string& output) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(input, ignored)) return refuse_in_folder(input, output);
+  refuse_itself(input, output);
+  if (std::filesystem::path(input).extension() != ".csv")
+    for (const char* sidecar : {".json", ".yaml", ".yml"}) refuse_itself(input + sidecar, output);
+  if (is_rosbag2(input))
+    for (const std::string& part : files_of_log(input)) refuse_itself(part, output);
 }
 
 WrittenFile detail::as_written(const OutputFile& file) {

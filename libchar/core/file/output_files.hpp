@@ -44,6 +44,11 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
 /// first file's follow as a set of their own. Throws Error(output).
 void commit_together(const std::vector<WholeFile*>& files);
 
+/// An input is never overwritten: throws Error(output) where the output is the input or a part of it: a file of
+/// a rosbag2 recording, the sidecar of an array, of a folder of
+/// results what its documents name, of a fleet its plan, tasks and results.
+void refuse_same_file(const std::string& input, const std::string& output);
+
 /// A file that was written piece by piece, and what went into it.
 struct WrittenFile {
   std::string path, sha256;

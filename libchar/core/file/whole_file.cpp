@@ -331,17 +331,4 @@ void write_whole_file(const std::string& path, std::string_view bytes, bool over
   file.commit();
 }
 
-void refuse_same_file(const std::string& input, const std::string& output) {
-  struct stat a {
-  }, b{};
-  if (::stat(input.c_str(), &a) != 0 || ::stat(output.c_str(), &b) != 0) return;
-  if (a.st_dev == b.st_dev && a.st_ino == b.st_ino && S_ISREG(a.st_mode))
-    throw Error({ErrorKind::output,
-                 "E0504",
-                 output,
-                 "is the input itself; an input is never overwritten",
-                 "",
-                 "choose another name"});
-}
-
 }  // namespace libchar

@@ -71,7 +71,4 @@ void sync_folder(const std::string& folder);
 /// One call for small files.
 void write_whole_file(const std::string& path, std::string_view bytes, bool overwrite = false);
 
-/// Throws Error(output) when two paths name the same existing file (an input is never overwritten).
-void refuse_same_file(const std::string& input, const std::string& output);
-
 }  // namespace libchar

@@ -102,11 +102,12 @@ double seconds_in(std::string_view text, const std::string& expected) {
 
 }  // namespace
 
-double parse_duration_s(std::string_view text) {
+double parse_duration_s(std::string_view text, bool lasts) {
   const std::string expected =
-      "a duration such as 90s, 250ms, 5min, 2h or 1d (a bare number is in seconds)";
+      fmt::format("a duration such as 90s, 250ms, 5min, 2h or 1d (a bare number is in seconds){}",
+                  lasts ? ", above zero" : "");
   const double value = seconds_in(text, expected);
-  if (!(value >= 0 && value < 1e12)) refuse(text, expected);
+  if (!(value >= 0 && value < 1e12) || (lasts && value == 0)) refuse(text, expected);
   return value;
 }
 

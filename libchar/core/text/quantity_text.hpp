@@ -22,8 +22,8 @@ std::uint64_t parse_count(std::string_view text,
                           std::uint64_t lowest = 0,
                           std::uint64_t highest = std::numeric_limits<std::uint64_t>::max());
 
-/// Seconds: "90", "90s", "1.5h", "250ms", "10us", "5min", "2d". A bare number is in seconds. >= 0.
-double parse_duration_s(std::string_view text);
+/// Seconds: "90", "90s", "1.5h", "250ms", "10us", "5min", "2d". A bare number is in seconds. >= 0, of what `lasts` > 0.
+double parse_duration_s(std::string_view text, bool lasts = false);
 
 /// Hertz: "200", "200Hz", "1.5kHz", "10MHz". > 0.
 double parse_rate_hz(std::string_view text);

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {
@@ -24,12 +25,18 @@ std::string minus_sign(const std::string& text) {
   return text.starts_with('-') ? "−" + text.substr(1) : text;
 }
 
+/// Of a double no power of ten lies further out.
+int whole_power(double power) {
+  return clamped_whole(power, -400, 400);
+}
+
+int power_below(double value) {
+  return whole_power(std::floor(std::log10(value) + 1e-9));
+}
+
 int digits_for_steps(double largest, double step) {
   if (!(largest > 0)) return 3;
-  return std::clamp(1 + static_cast<int>(std::floor(std::log10(largest) + 1e-9)) -
-                        static_cast<int>(std::floor(std::log10(step) + 1e-9)),
-                    1,
-                    15);
+  return std::clamp(1 + power_below(largest) - power_below(step), 1, 15);
 }
 
 std::vector<Tick> even_ticks(const FigureAxis& axis, double length, double apart) {
@@ -51,11 +58,11 @@ std::string decade_label(int exponent, bool plain) {
 
 std::vector<Tick> log_ticks(const FigureAxis& axis, double length, double apart) {
   const double low = std::log10(axis.low), high = std::log10(axis.high), decades = high - low;
-  const int each = std::max(1, static_cast<int>(std::ceil(decades * apart / length)));
+  const int each = std::max(1, whole_power(std::ceil(decades * apart / length)));
   const bool few = decades < 2.3 && length / decades > 3 * apart, fine = each == 1;
   const bool plain = low > -3.1 && high < 3.9;  // "0.001" to "1000", else powers throughout
   std::vector<Tick> out;
-  for (int e = static_cast<int>(std::floor(low)); e <= static_cast<int>(std::ceil(high)); ++e)
+  for (int e = whole_power(std::floor(low)); e <= whole_power(std::ceil(high)); ++e)
     for (int d = 1; d < (fine ? 10 : 2); ++d) {
       const double value = d * std::pow(10.0, e), at = std::log10(value);
       if (at < low - 1e-9 || at > high + 1e-9) continue;

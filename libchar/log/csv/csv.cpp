@@ -421,6 +421,7 @@ bool sniff(const std::string&, std::string_view first_bytes) {
 Format csv_format() {
   Format row;
   row.about.name = "csv";
+  row.about.text = true;
   row.about.title = "CSV";
   row.about.suffixes = {".csv", ".tsv", ".txt", ".dat", ".lvm"};
   row.about.otherwise = "`-`";

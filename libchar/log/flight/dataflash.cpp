@@ -314,6 +314,7 @@ Format dataflash_format() {
   row.about.brief = "DataFlash .bin";
   row.about.otherwise = "`.bin` that begins like one";
   row.about.topics = true;
+  row.about.time_sources = true;
   row.certain = surely_dataflash;
   row.topics = open_dataflash;
   return row;

@@ -296,6 +296,7 @@ Format ulog_format() {
   row.about.suffixes = {".ulg"};
   row.about.units = "of PX4's sensors";
   row.about.topics = true;
+  row.about.time_sources = true;
   row.certain = is_ulog;
   row.topics = open_topics<UlogReader>;
   return row;

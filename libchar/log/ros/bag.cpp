@@ -360,6 +360,7 @@ Format bag_format() {
   row.about.title = "ROS 1 bag";
   row.about.suffixes = {".bag"};
   row.about.topics = true;
+  row.about.time_sources = true;
   row.topics = open_topics<BagReader>;
   row.about.units = "of ROS types";
   row.certain = [](std::string_view first_bytes) { return first_bytes.starts_with(kBagMagic); };

@@ -313,6 +313,7 @@ Format db3_format() {
   row.about.suffixes = {".db3"};
   row.about.units = "of ROS types";
   row.about.topics = true;
+  row.about.time_sources = true;
   row.certain = [](std::string_view first_bytes) { return first_bytes.starts_with(kSqliteMagic); };
   row.topics = open_db3;
   return row;

@@ -103,6 +103,7 @@ Format mcap_format() {
   row.about.title = "MCAP";
   row.about.suffixes = {".mcap"};
   row.about.topics = true;
+  row.about.time_sources = true;
   row.topics = open_topics<McapReader>;
   row.about.units = "of ROS types";
   row.certain = [](std::string_view first_bytes) { return first_bytes.starts_with(kMcapMagic); };

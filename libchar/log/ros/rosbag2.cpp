@@ -289,6 +289,7 @@ Format rosbag2_format() {
   row.about.name = "rosbag2";
   row.about.title = "ROS 2 recording";
   row.about.topics = true;
+  row.about.time_sources = true;
   row.topics = open_topics<Rosbag2Reader>;
   row.about.brief = "folders of rosbag2";
   row.about.otherwise = "a folder of rosbag2, or its `metadata.yaml`";

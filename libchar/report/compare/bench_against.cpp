@@ -16,6 +16,9 @@
 namespace libchar {
 namespace {
 
+/// Times may be worse by so many tolerances: an interval within a run does not hold what differs from run to run.
+constexpr double kTimeTolerance = 3;
+
 struct Named {
   std::string what;
   bool is_time = false;

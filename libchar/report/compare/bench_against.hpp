@@ -17,9 +17,6 @@ struct BenchChange {
   bool resolved = false;  ///< the intervals do not meet
 };
 
-/// Times may be worse by so many tolerances: an interval within a run does not hold what differs from run to run.
-inline constexpr double kTimeTolerance = 3;
-
 struct BenchChanges {
   std::vector<BenchChange> figures;  ///< that stand in both
   bool same_machine = false;         ///< processor and their number

@@ -4,15 +4,40 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/numeric/present.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/scene/detail/scene_simulation.hpp"
 
 namespace libchar {
+
+namespace {
+
+/// A scene has defaults for how large a signal is; on a command line a forgotten size would go unseen.
+void refuse_without_size(const std::string& text, const std::string& place) {
+  static constexpr std::pair<std::string_view, std::string_view> kSizes[] = {
+      {"sine", "amplitude"},
+      {"chirp", "amplitude"},
+      {"uniform", "amplitude"},
+      {"noise", "standard_deviation"},
+      {"random_walk", "step"}};
+  for (const auto& [kind, size] : kSizes)
+    if (text.substr(0, text.find(',')) == kind &&
+        text.find(fmt::format(",{}=", size)) == std::string::npos)
+      throw Error({ErrorKind::usage,
+                   "E0721",
+                   place,
+                   fmt::format("how large? {} needs its {}", kind, size),
+                   text,
+                   fmt::format("such as {},{}=2", kind, size)});
+}
+
+}  // namespace
 
 SignalSpec parse_signal(const std::string& text, const std::string& place) {
   if (const auto value = parse_double(text)) {
@@ -37,7 +62,9 @@ SignalSpec parse_signal(const std::string& text, const std::string& place) {
     map += ", " + pair.substr(0, equals) + ": " + pair.substr(equals + 1);
     at = end;
   }
-  return read_signal(parse_yaml_document(map + "}", place), place, "");
+  SignalSpec signal = read_signal(parse_yaml_document(map + "}", place), place, "");
+  refuse_without_size(text, place);
+  return signal;
 }
 
 namespace {
@@ -86,6 +113,8 @@ SensorFault parse_fault(const std::string& text, const std::vector<std::string>&
   const auto number = [&](const std::string& word) {
     const auto value = parse_double(word);
     if (!value) refuse("expected a number in " + form, word);
+    if (std::abs(*value) > kLargestSample)
+      refuse("a sample beyond " + shortest(kLargestSample) + " is none", word);
     return *value;
   };
   const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;

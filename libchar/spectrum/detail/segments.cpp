@@ -165,11 +165,14 @@ void check_options(const WelchOptions& options) {
                  "`overlap`",
                  "the overlap of segments is a fraction of a segment, from 0 to below 1",
                  fmt::format("{}", options.overlap)});
-  if (options.segment != 0 && options.segment < kShortestSegment)
+  if (options.segment != 0 &&
+      (options.segment < kShortestSegment || options.segment > kLongestSegment))
     throw Error({ErrorKind::usage,
                  "E0201",
                  "`segment`",
-                 fmt::format("a segment needs at least {} samples", kShortestSegment),
+                 fmt::format("a segment has at least {} samples, and at most {}",
+                             kShortestSegment,
+                             kLongestSegment),
                  fmt::format("{}", options.segment)});
 }
 

@@ -16,6 +16,7 @@
 namespace libchar::welch_detail {
 
 inline constexpr std::uint64_t kShortestSegment = 8;
+inline constexpr std::uint64_t kLongestSegment = std::uint64_t{1} << 32U;
 
 /// Lengths of a segmentation. Segments start at 0, hop, 2 hop, …; every `group` of them (an even
 /// number: halves go in pairs) are summed from zero and the sums of the groups added in order, so

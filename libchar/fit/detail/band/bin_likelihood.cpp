@@ -31,13 +31,14 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
                  "the record is too short: no frequency is left to be fitted"});
   double largest = 0;
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
-  constexpr double kLargestPower = 1e200, kSmallestPower = 1e-200;  // their products are numbers
+  constexpr double kLargestPower = 1e140,
+                   kSmallestPower = 1e-140;  // so are their products and profiles
   if (largest > 0 && !(largest > kSmallestPower && largest < kLargestPower))
     throw Error(
         {ErrorKind::numeric,
          "E0420",
          "",
-         "the squares of the samples do not fit into a double (deviations from 1e-100 to 1e100 do)",
+         "the squares of the samples do not fit into a double (deviations from 1e-70 to 1e70 do)",
          "",
          "give them in another unit"});
   if (!(largest > 0)) {

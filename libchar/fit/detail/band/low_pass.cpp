@@ -156,7 +156,7 @@ std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
   ceres::Solver::Summary summary;
   count_work(WorkKind::descents, 1);
   ceres::Solve(exact_solver_options(200), &problem, &summary);
-  if (!summary.IsSolutionUsable()) return std::nullopt;
+  if (!has_covariance(summary, problem)) return std::nullopt;
 
   LowPassFit fit;
   fit.corner_hz = std::exp(x.back());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "libchar/core/text/readable.hpp"
@@ -212,13 +213,32 @@ std::string long_name(Term term) {
   return fmt::format("{} {}", names[i], kTermNames[i].letter);
 }
 
+namespace {
+
+/// Terms that are so far from the record that its likelihood has no curvature there say nothing of how well
+/// they are known.
+void report_undetermined(Term which, NoiseFit& fit) {
+  constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+  Coefficient& term = fit.term[static_cast<std::size_t>(which)];
+  term.status = Status::undetermined;
+  term.ci95 = {kNotKnown, kNotKnown};
+  term.upper95 = kNotKnown;
+  fit.findings.push_back(finding(
+      "undetermined",
+      fmt::format(
+          "The record does not determine {}: the terms that were offered describe it nowhere.",
+          long_name(which))));
+}
+
+}  // namespace
+
 ModelPoint report_coefficients(const BinProblem& problem,
                                const Decision& decision,
                                const FitOptions& options,
                                NoiseFit& fit) {
   const Polished polished = polish(problem, decision.at);
   fit.theta = polished.at.theta;
-  fit.converged = decision.converged && polished.converged;
+  fit.converged = !polished.known || (decision.converged && polished.converged);
   fit.iterations = decision.iterations + polished.iterations;
   const Optimum best{polished.at, polished.half_deviance};
   const WithDropped all = with_dropped(problem, decision, best, options.terms);
@@ -239,6 +259,10 @@ ModelPoint report_coefficients(const BinProblem& problem,
     if (!(fit.theta[i] > 0)) {
       term.status = decision.kept[i] && ambiguous ? Status::undetermined : Status::not_detected;
       report_limits(problem, decision.kept, best, i, term);
+      continue;
+    }
+    if (!polished.known) {
+      report_undetermined(static_cast<Term>(i), fit);
       continue;
     }
     const double sd = std::sqrt(fit.covariance[i][i]);

@@ -37,6 +37,11 @@ ceres::Covariance::Options exact_covariance_options() {
   return options;
 }
 
+// Where the cost cannot be computed Ceres 2.1 factors an empty matrix.
+bool has_covariance(const ceres::Solver::Summary& summary, ceres::Problem& problem) {
+  return summary.IsSolutionUsable() && problem.Evaluate({}, nullptr, nullptr, nullptr, nullptr);
+}
+
 namespace {
 
 class BinResiduals final : public ceres::CostFunction {
@@ -139,6 +144,8 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
     result.half_deviance = value;
   }
 
+  result.known = has_covariance(summary, solver_problem);
+  if (!result.known) return result;
   ceres::Covariance covariance(exact_covariance_options());
   const std::size_t p = terms.size(), all = p + shapes;
   std::vector<double> block(all * all);

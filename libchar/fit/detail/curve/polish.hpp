@@ -2,6 +2,7 @@
 // The last digits of the maximum, and its covariance, by Ceres.
 
 #include <ceres/covariance.h>
+#include <ceres/problem.h>
 #include <ceres/solver.h>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
@@ -17,12 +18,16 @@ ceres::Solver::Options exact_solver_options(int most_iterations);
 /// Of a covariance at the solution, with directions that the data do not determine left out.
 ceres::Covariance::Options exact_covariance_options();
 
+/// Can the covariance be asked for at all: has the solver a solution, and the problem a cost where it stands?
+bool has_covariance(const ceres::Solver::Summary& summary, ceres::Problem& problem);
+
 struct Polished {
   ModelPoint at;
   double half_deviance = 0;
   TermMatrix covariance = TermMatrix::Zero();  ///< of ln theta of the positive terms
   int iterations = 0;
   bool converged = false;
+  bool known = true;  ///< the covariance; else the likelihood cannot be computed around `at`
 };
 
 /// Minimises the deviance over ln theta of the positive terms of `start` and over the shape.

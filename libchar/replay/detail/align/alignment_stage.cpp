@@ -30,10 +30,21 @@ LearningWindow window_of_alignment(const Scene& scene,
   const SceneAlign& align = *scene.align;
   if (align.learn == "run")
     return {std::clamp(instants.settled(), plan.run_from, plan.run_to), plan.run_to};
-  if (align.learn == "learning") return {plan.learn_from, plan.learn_to};
-  const TimeWindow& w = align.window ? *align.window : *scene.rest;
-  const LearningWindow out{std::max(instants.instant_at(w.from_s), instants.settled()),
-                           instants.instant_at(w.to_s)};
+  const bool learning = align.learn == "learning";
+  const TimeWindow& w = learning ? plan.learning : align.window ? *align.window : *scene.rest;
+  LearningWindow out{plan.learn_from, plan.learn_to};
+  if (!learning)
+    out = {std::max(instants.instant_at(w.from_s), instants.settled()),
+           instants.instant_at(w.to_s)};
+  if (out.to - out.from < 2 && instants.settled() > instants.instant_at(w.from_s))
+    throw Error(
+        {ErrorKind::usage,
+         "E0939",
+         scene.file,
+         "align: the window ends before the filter has settled, which takes " +
+             duration_text(static_cast<double>(instants.settled()) / instants.info().rate_hz),
+         fmt::format("from {} s", brief_text(w.from_s, 6)),
+         "a later or longer window, or a filter of a higher corner"});
   if (out.to - out.from < 2)
     throw Error({ErrorKind::input,
                  "E0903",

@@ -13,11 +13,14 @@
 #include <complex>
 #include <numbers>
 
+#include "libchar/core/numeric/whole.hpp"
+
 namespace libchar {
 namespace {
 
 /// Of the settling time: as long the last value stands for what is missing.
 constexpr double kBridgedShare = 0.01;
+constexpr std::int64_t kLongest = std::int64_t{1} << 50;  ///< samples: no recording has more
 
 SecondOrderSection with_poles(double k) {
   const double d = 1 + std::numbers::sqrt2 * k + k * k;
@@ -73,8 +76,8 @@ BandFilter band_filter(double from_hz, double to_hz, double rate_hz) {
   out.sections[out.count++] = butterworth_high_pass(from_hz / rate_hz);
   if (to_hz > 0) out.sections[out.count++] = butterworth_low_pass(to_hz / rate_hz);
   const double settling = kSettlingPeriods / from_hz * rate_hz;
-  out.settling = static_cast<std::int64_t>(std::ceil(settling));
-  out.bridged = static_cast<std::int64_t>(kBridgedShare * settling);
+  out.settling = clamped_whole<std::int64_t>(std::ceil(settling), 0, kLongest);
+  out.bridged = clamped_whole<std::int64_t>(kBridgedShare * settling, 0, kLongest);
   out.noise_gain = noise_gain(out, 2 * std::numbers::pi * from_hz / rate_hz);
   return out;
 }

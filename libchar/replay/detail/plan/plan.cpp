@@ -110,9 +110,10 @@ fusion::Array describe_array(const Scene& scene,
         return s.model.has_value();
       }))
     for (std::size_t i = 0; i < scene.sensors.size(); ++i)
-      array.noise_models.push_back(noise_model(*scene.sensors[i].model,
-                                               scene.sensors[i].scale * instants.factor(i),
-                                               levels[static_cast<Eigen::Index>(i)]));
+      array.noise_models.push_back(noise_model(
+          *scene.sensors[i].model,
+          scene.sensors[i].scale * model_factor(scene, instants, i) * instants.factor(i),
+          levels[static_cast<Eigen::Index>(i)]));
   array.rate_hz = info.rate_hz;
   array.learning_samples = info.has_reference ? plan.learn_to - plan.learn_from : 0;
   array.reference_throughout = info.has_reference;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/replay/detail/plan/noise_level.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/detail/plan/rest.hpp"
@@ -34,6 +35,19 @@ RestMeter at_rest(const Scene& scene, const Instants& instants, Progress& progre
 
 }  // namespace
 
+double model_factor(const Scene& scene, const Instants& instants, std::size_t sensor) {
+  const SensorModel& model = *scene.sensors[sensor].model;
+  const std::string& own = model.sensitivity.unit.empty() ? model.unit : model.sensitivity.unit;
+  const std::string& recorded = instants.source().info().units[sensor];
+  if (const auto factor = unit_factor(own, recorded)) return *factor;
+  throw Error({ErrorKind::usage,
+               "E0938",
+               scene.sensors[sensor].name,
+               "its model is in " + own + ", and it is recorded in " + recorded,
+               "",
+               "give it the model of such a sensor"});
+}
+
 SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress) {
   SensorKnowledge out;
   const std::size_t n = scene.sensors.size();
@@ -58,7 +72,7 @@ SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progr
       out.noise_variances[i] = *sensor.noise * *sensor.noise * to_fused;
       out.noise_sources[i] = "the scene";
     } else if (sensor.model) {
-      const double scale = sensor.scale * sensor.scale;
+      const double scale = std::pow(sensor.scale * model_factor(scene, instants, i), 2);
       const std::uint64_t oversampling = scene.simulate    ? scene.simulate->oversampling
                                          : scene.simulated ? scene.simulated->oversampling
                                                            : 1;
