@@ -50,7 +50,7 @@ RUNS = [
      "--write-scene", "said.yaml"],
     ["replay", "array.scene.yaml", "-o", "replay-scene", "--no-timing"],
     ["replay", "scenes/rv-2.5-tilt.yaml", "-o", "tilt"], ["replay", "scenes/rv-2.5-tilt.yaml", "--explain"],
-    ["replay", "--list"],
+    ["replay", "--list"], ["replay", "array.csv", "--sensors", "gyro*", "--write-scene", "written.scene.yaml"],
     ["fuse", "array.csv", "--with", "replay", "-o", "fused.csv"],
     ["compare", "report", "judged"], ["compare", "replay", "replay"], ["compare", "pooled", "pooled"],
     ["convert", IMU, "-o", "imu.npy"], ["convert", IMU, "-o", "imu.f64"],

@@ -20,7 +20,7 @@ struct ReportVerb {
 
 void run_report(const ReportVerb& verb) {
   if (!verb.output.empty() && verb.output != "-")
-    foresee_output(verb.output, {report_file(verb.file)}, verb.force);
+    foresee_output(verb.output, {verb.file, report_file(verb.file)}, verb.force);
   const TableFormat format = verb.latex ? TableFormat::latex
                              : verb.csv ? TableFormat::csv
                                         : TableFormat::markdown;

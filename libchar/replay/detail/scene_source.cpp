@@ -223,6 +223,7 @@ void SceneSource::scan(Progress& progress) {
   try {
     log = read_log(scene_->recording, reading_, first, progress);
   } catch (const Error& error) {
+    if (scene_->file == scene_->recording) throw;  // a recording whose options were said, no scene
     throw of_scene(error, scene_->recording);
   }
   for (std::size_t k = 0; k < wanted_.size(); ++k) {

@@ -41,6 +41,8 @@ CASES = [
     (5, "E0504", "bench mx/a.sensor.yaml --quick --parts design --against bn/bench.json -o bn --force"),
     (5, "E0504", "fuse arr.csv --with rr --as csv -o rr/report.json --force"),
     (5, "E0505", "plot rep -c a -o p.svg --csv p.svg"),
+    (5, "E0504", "report rr --csv --force -o rr/fusion.yaml"),
+    (2, "E0319", "replay arr.csv --sensors a,b -o o --from 20"),
     (5, "E0505", "fit x.csv -o m --models m"),
     (5, "E0505", "simulate mx/a.sensor.yaml --samples 5 -o q.csv --scene ./q.csv"),
     (4, "E0711", "fit x.csv --scale *=1e78"),

@@ -24,7 +24,7 @@ import option_values as values
 
 PERMISSIONS = {"--quiet", "--color", "--threads", "--memory", "--strict", "--force", "--allow-outside", "--allow-read",
                "--no-skip", "--budget", "--skip-unreadable", "--stretch", "--split-above", "--partial", "--overflow",
-               "--repeated-header", "--full-overlap"}
+               "--repeated-header", "--full-overlap", "--markdown"}  # the last is the default by name
 MEASURED = re.compile(r'"(?:command|measured|seconds|bytes|sha256|files_sha256|path|ns_per_sample|peak_bytes)"')
 
 
