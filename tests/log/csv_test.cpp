@@ -520,6 +520,20 @@ TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   CHECK(same.samples[0] == std::vector<double>{1, 3, 5});
   CHECK(std::isnan(same.samples[2][1]));
   CHECK(same.samples[3][2] == 60);
+  // Channels are chosen by the names that they have in the end, or by columns, or both.
+  options.channels = {"b_y", "a_x"};
+  const std::string long_form = "t [s],id,x,y\n0,a,1,10\n0,b,2,20\n1,a,3,30\n1,b,4,40\n2,a,5,50\n";
+  const Recording some = read_text(long_form, options);
+  CHECK(names(some) == Names{"a_x", "b_y"});
+  CHECK(some.samples[0] == std::vector<double>{1, 3, 5});
+  CHECK(some.samples[1][1] == 40);
+  options.channels = {"y"};
+  CHECK(names(read_text(long_form, options)) == Names{"a", "b"});
+  options.channels = {"y", "b"};
+  CHECK(read_text(long_form, options).samples[0][0] == 20);
+  options.channels = {"c_x"};
+  CHECK_THAT(failure(long_form, options), Catch::Contains("E0320") && Catch::Contains("a_x"));
+  options.channels.clear();
   const Recording turns =
       read_text("t [s],id,x\n0,a,1\n0.1,b,2\n1,a,3\n1.1,b,4\n2,a,5\n2.1,b,6\n", options);
   CHECK(turns.samples[1] == std::vector<double>{2, 4, 6});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/chunk_pipeline.hpp"
 #include "libchar/log/csv/chunk_reader.hpp"
@@ -20,6 +22,7 @@
 #include "libchar/log/csv/head/header.hpp"
 #include "libchar/log/csv/head/plan.hpp"
 #include "libchar/log/csv/rows/rows.hpp"
+#include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/detail/row_source.hpp"
@@ -37,6 +40,9 @@ class Pivot {
   Pivot() = default;
   Pivot(std::size_t channels, std::size_t groups, bool timed, bool cycles);
   bool active() const { return groups_ > 0; }
+  /// Of the channels of all groups, in their order; all unless `keep` is called.
+  const std::vector<std::size_t>& kept() const { return kept_; }
+  void keep(std::vector<std::size_t> some) { kept_ = std::move(some); }
 
   /// Replaces the rows of `block`, whose groups these are, by those that are complete.
   void widen(RowBlock& block, const std::vector<std::uint32_t>& groups);
@@ -50,6 +56,7 @@ class Pivot {
   std::size_t channels_ = 0, groups_ = 0;
   bool timed_ = false, cycles_ = false, any_ = false;
   std::vector<double> values_;
+  std::vector<std::size_t> kept_;
   std::vector<bool> filled_;
   std::int64_t stamp_ = 0;
   std::uint64_t line_ = 0;
@@ -61,11 +68,14 @@ Pivot::Pivot(std::size_t channels, std::size_t groups, bool timed, bool cycles)
       timed_(timed),
       cycles_(cycles || !timed),
       values_(channels * groups, kMissing),
-      filled_(groups, false) {}
+      kept_(channels * groups),
+      filled_(groups, false) {
+  std::iota(kept_.begin(), kept_.end(), std::size_t{0});
+}
 
 void Pivot::begin(RowBlock& out) {
   out.rows = 0;
-  out.columns.resize(channels_ * groups_);
+  out.columns.resize(kept_.size());
   for (auto& column : out.columns) column.clear();
   out.time_ns.clear();
   out.line_offset.clear();
@@ -73,7 +83,7 @@ void Pivot::begin(RowBlock& out) {
 }
 
 void Pivot::emit(RowBlock& out) {
-  for (std::size_t c = 0; c < values_.size(); ++c) out.columns[c].push_back(values_[c]);
+  for (std::size_t c = 0; c < kept_.size(); ++c) out.columns[c].push_back(values_[kept_[c]]);
   if (timed_) out.time_ns.push_back(stamp_);
   out.line_offset.push_back(static_cast<std::uint32_t>(line_ - out.first_line));
   ++out.rows;
@@ -129,9 +139,10 @@ class CsvSource final : public RowSource {
                    "",
                    "copy the file again"});
     dialect_ = understand(head, chunks_.whole(), options, info_);
-    plan_ = plan_columns(dialect_, options, info_);
-    read_channels_ = info_.channels;
-    if (dialect_.group_column >= 0) group_channels();
+    if (dialect_.group_column >= 0)
+      plan_groups(options);
+    else
+      read_channels_ = columns_planned(options);
     missing_per_channel_.assign(plan_.channels, 0);
     fractional_.assign(plan_.channels, 0);
     pending_ = std::exchange(info_.warnings, {});
@@ -231,6 +242,34 @@ class CsvSource final : public RowSource {
 
  private:
   // The channels of each group: "Gyroscope_x", or the group alone where there is one.
+  std::vector<Channel> columns_planned(const ReadOptions& options) {
+    plan_ = plan_columns(dialect_, options, info_);
+    return info_.channels;
+  }
+
+  // Words that name columns choose columns; others choose among the channels that the groups make of these.
+  void plan_groups(const ReadOptions& options) {
+    ReadOptions columns = options, made = options;
+    std::vector<std::string> names;
+    for (const Column& column : dialect_.columns) names.push_back(column.name);
+    columns.channels.clear();
+    made.channels.clear();
+    for (const std::string& word : options.channels) {
+      const bool names_column = std::any_of(
+          names.begin(), names.end(), [&](const auto& name) { return matches(word, name); });
+      (names_column ? columns : made).channels.push_back(word);
+    }
+    read_channels_ = columns_planned(columns);
+    group_channels();
+    if (made.channels.empty()) return;
+    TableColumns table;
+    for (const Channel& channel : info_.channels) table.names.push_back(channel.name);
+    pivot_.keep(choose_channels(table, made, info_.file));
+    std::vector<Channel> kept;
+    for (const std::size_t c : pivot_.kept()) kept.push_back(info_.channels[c]);
+    info_.channels = std::move(kept);
+  }
+
   void group_channels() {
     std::vector<Channel> wide;
     for (const std::string& group : dialect_.groups)
