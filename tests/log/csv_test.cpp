@@ -510,6 +510,28 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("what is not read is recognised, with the way to a table") {
+  using namespace std::string_literals;
+  const std::pair<std::string, const char*> contents[] = {
+      {"PAR1\x15\x04\x15"s, "read_parquet"},
+      {"ARROW1\0\0\xFF"s, "read_feather"},
+      {"TDSm\x0E\0\0\0"s, "nptdms"},
+      {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"s, "save it as CSV"},
+      {"RIFF\x24\x08\0\0WAVEfmt "s, "wavfile"},
+      {"\xB5\x62\x01\x07\x5C\0"s, "pyubx2"},
+      {"H Product:Blackbox flight data recorder\n"s, "blackbox_decode"},
+      {"$GPGGA,123519,4807.038,N\n"s, "gpsbabel"},
+      {"\0\x05\xE9\x5C\x6F\x10\x20\x30\xFE\x09\0\x01"s, "mavlogdump"},
+      {"\x80\x04\x95\x10\0\0\0"s, "pickle"},
+      {"000001D CMPX\x01\x02"s, "obspy"},
+      {"     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"s,
+       "gfzrnx"},
+      {"header: \n  seq: 0\n  stamp: \n    secs: 1\n  frame_id: \"imu\"\n"s, "rostopic echo -p"},
+  };
+  for (const auto& [text, way] : contents)
+    CHECK_THAT(failure(text), Catch::Contains("E0301") && Catch::Contains(way));
+}
+
 TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   ReadOptions options;
   options.group_by = "id";

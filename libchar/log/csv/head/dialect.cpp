@@ -15,6 +15,7 @@
 #include "libchar/log/csv/head/candidates.hpp"
 #include "libchar/log/csv/head/first_lines.hpp"
 #include "libchar/log/csv/head/header.hpp"
+#include "libchar/log/csv/head/other_content.hpp"
 #include "libchar/log/csv/head/sample.hpp"
 #include "libchar/log/csv/head/study.hpp"
 #include "libchar/log/csv/long_table.hpp"

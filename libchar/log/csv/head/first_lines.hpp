@@ -22,13 +22,6 @@ std::optional<double> stated_rate_hz(std::string_view line);
 /// What one count is: "tscale,0.001" (s), "gscale,0.00122" (rad/s) and "ascale,0.00049" (g) of Gyroflow's .gcsv.
 std::optional<double> stated_count(std::string_view line, std::string_view key);
 
-// What calls itself CSV and is something else.
-
-/// Throws Error(input) with what it is and how to read it: another format by its first bytes,
-/// UTF-16, nothing at all, or binary data. NUL bytes alone are left to the row parser, which knows
-/// logs that a power failure cut.
-void refuse_other_content(std::string_view head, const std::string& file);
-
 struct TableStart {
   std::size_t data = 0;              ///< index of the first row of numbers
   std::optional<std::size_t> names;  ///< of the line of names

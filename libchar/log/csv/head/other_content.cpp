@@ -1,0 +1,172 @@
+// Formats by their first bytes, from the specifications of each and the magic numbers of file(1). What the
+// program reads stands here for files that are called CSV all the same.
+#include "libchar/log/csv/head/other_content.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "libchar/core/error.hpp"
+#include "libchar/log/csv/line.hpp"
+
+namespace libchar::csv {
+namespace {
+
+using namespace std::string_view_literals;
+
+struct Magic {
+  std::size_t at;  ///< byte where they stand
+  std::string_view bytes;
+  const char *what, *hint;
+};
+
+constexpr const char* kPandas =
+    "pandas reads it: df = pandas.read_parquet(FILE); df.to_csv('log.csv', index=False)";
+
+constexpr std::array kMagics = {
+    Magic{0, "\x93NUMPY"sv, "a NumPy array (NPY)", "read it with `format` npy"},
+    Magic{0, "\x1F\x8B"sv, "compressed (gzip)", "unpack it first: gunzip"},
+    Magic{0, "PK\x03\x04"sv, "a ZIP archive (XLSX or NPZ?)", "unpack it, or export it as CSV"},
+    Magic{0, "\x28\xB5\x2F\xFD"sv, "compressed (zstd)", "unpack it first: unzstd"},
+    Magic{0, "BZh"sv, "compressed (bzip2)", "unpack it first: bunzip2"},
+    Magic{0, "\x89PNG"sv, "a picture", ""},
+    Magic{0, "\xFF\xD8\xFF"sv, "a picture", ""},
+    Magic{0, "%PDF"sv, "PDF", "export the table as CSV"},
+    Magic{0, "\x89HDF"sv, "HDF5", "export it as CSV or .npy"},
+    Magic{0, "PAR1"sv, "a Parquet table", kPandas},
+    Magic{0,
+          "ARROW1"sv,
+          "an Arrow or Feather table",
+          "pandas reads it: pandas.read_feather(FILE).to_csv('log.csv', index=False)"},
+    Magic{0,
+          "TDSm"sv,
+          "a TDMS file of LabVIEW",
+          "npTDMS reads it: nptdms.TdmsFile(FILE).as_dataframe().to_csv('log.csv')"},
+    Magic{0, "\xD0\xCF\x11\xE0"sv, "an old Excel workbook (XLS)", "save it as CSV"},
+    Magic{8,
+          "WAVE"sv,
+          "sound (WAV)",
+          "scipy reads it: rate, x = scipy.io.wavfile.read(FILE); numpy.save('log.npy', x)"},
+    Magic{0, "\xB5\x62"sv, "messages of u-blox (UBX)", "u-center or pyubx2 export them as CSV"},
+    Magic{0,
+          "H Product:Blackbox"sv,
+          "a Blackbox log of Betaflight or INAV",
+          "blackbox_decode FILE makes a CSV of it"},
+    Magic{0,
+          "$GP"sv,
+          "sentences of a GNSS receiver (NMEA)",
+          "gpsbabel -i nmea -f FILE -o unicsv -F log.csv"},
+    Magic{0,
+          "$GN"sv,
+          "sentences of a GNSS receiver (NMEA)",
+          "gpsbabel -i nmea -f FILE -o unicsv -F log.csv"},
+    Magic{0,
+          "\x80\x03"sv,
+          "a Python pickle",
+          "numpy.save('log.npy', numpy.asarray(pickle.load(open(FILE, 'rb'))))"},
+    Magic{0,
+          "\x80\x04"sv,
+          "a Python pickle",
+          "numpy.save('log.npy', numpy.asarray(pickle.load(open(FILE, 'rb'))))"},
+    Magic{60,
+          "RINEX VERSION"sv,
+          "observations of a GNSS receiver (RINEX)",
+          "gfzrnx or georinex export them as CSV"},
+    Magic{0, "\xC3\x40\xF1"sv, "seismic traces (SEG-Y)", "ObsPy reads them: obspy.read(FILE)"},
+    Magic{0, "C 1 CLIENT"sv, "seismic traces (SEG-Y)", "ObsPy reads them: obspy.read(FILE)"},
+};
+
+/// MAVLink messages behind stamps of eight bytes: the first two of them are 0 until the year 2100.
+bool is_telemetry_log(std::string_view head) {
+  return head.size() > 9 && head[0] == 0 && head[1] != 0 &&
+         (head[8] == '\xFE' || head[8] == '\xFD') && head[2] != 0;
+}
+
+/// "000001D ": a number of six digits, the quality, a blank.
+bool is_miniseed(std::string_view head) {
+  return head.size() > 8 &&
+         std::all_of(head.begin(), head.begin() + 6, [](char c) { return c >= '0' && c <= '9'; }) &&
+         std::string_view("DRQM").find(head[6]) != std::string_view::npos && head[7] == ' ' &&
+         head.substr(0, 64).find('\n') == std::string_view::npos;
+}
+
+bool is_utf16(std::string_view head) {
+  return head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF") ||
+         (head.size() >= 4 && ((head[0] == 0) != (head[1] == 0)) &&
+          ((head[2] == 0) != (head[3] == 0)) && head[0] == head[2 * (head[0] == 0)]);
+}
+
+/// Messages as `rostopic echo` and `ros2 topic echo` print them.
+bool is_echo(std::string_view head) {
+  return head.starts_with("header:") && head.find("stamp:") != std::string_view::npos &&
+         head.find("frame_id:") != std::string_view::npos;
+}
+
+[[noreturn]] void refuse(const std::string& file, const std::string& what, const char* hint) {
+  throw Error({ErrorKind::input, "E0301", at(file, 1, 1, 0), "content is " + what, "", hint});
+}
+
+// Text has next to no control characters; NUL bytes are left to the row parser, which knows logs
+// that a power failure cut.
+void refuse_binary(std::string_view head, const std::string& file) {
+  std::size_t controls = 0, others = 0, first = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(head.size(), 4096); ++i) {
+    const auto byte = static_cast<unsigned char>(head[i]);
+    if (byte == 0) continue;
+    const bool control =
+        byte < 0x20 && std::string_view("\t\n\v\f\r\x1A").find(head[i]) == std::string_view::npos;
+    if (control && controls++ == 0) first = i;
+    ++others;
+  }
+  if (controls < 2 || controls * 50 < others) return;
+  std::size_t line = 1, column = 1;
+  for (std::size_t i = 0; i < first; ++i, ++column)
+    if (head[i] == '\n') ++line, column = 0;
+  throw Error(
+      {ErrorKind::input,
+       "E0301",
+       at(file, line, column, first),
+       fmt::format("content is binary, not text: {} control characters in the first {} bytes",
+                   controls,
+                   std::min<std::size_t>(head.size(), 4096)),
+       "",
+       "`format` raw with a sidecar reads raw binary (docs: raw binary)"});
+}
+
+void refuse_magic(std::string_view head, const std::string& file) {
+  for (const Magic& magic : kMagics)
+    if (head.size() > magic.at && head.substr(magic.at).starts_with(magic.bytes))
+      refuse(file, std::string(magic.what) + ", not CSV", magic.hint);
+  if (is_utf16(head)) refuse(file, "UTF-16, not UTF-8", "convert it: iconv -f utf-16 -t utf-8");
+  if (is_telemetry_log(head))
+    refuse(file,
+           "a telemetry log (tlog) of MAVLink, not CSV",
+           "mavlogdump.py of pymavlink exports it as CSV");
+  if (is_miniseed(head))
+    refuse(file,
+           "seismic records (miniSEED), not CSV",
+           "ObsPy reads them: obspy.read(FILE)[0].write('log.slist', format='SLIST')");
+}
+
+}  // namespace
+
+void refuse_other_content(std::string_view head, const std::string& file) {
+  if (head.empty())
+    throw Error({ErrorKind::input, "E0322", at(file, 1, 1, 0), "the file is empty"});
+  refuse_magic(head, file);
+  refuse_binary(head, file);
+  const std::size_t front = head.find_first_not_of(" \t\r\n");
+  if (front == std::string_view::npos) return;
+  if (is_echo(head.substr(front)))
+    refuse(file,
+           "messages as `rostopic echo` prints them, not CSV",
+           "a bag is read as it is; else print rows: rostopic echo -p TOPIC > log.csv; ros2 topic "
+           "echo has a form in CSV too");
+  if (head[front] == '<')
+    refuse(file, "HTML or XML, not CSV", "was a web page saved in place of the file?");
+  if (head[front] == '{')
+    refuse(file, "JSON, not CSV", "is this the sidecar of a raw log, or a result?");
+}
+
+}  // namespace libchar::csv
