@@ -185,6 +185,7 @@ TEST_CASE("comments may begin with a semicolon where it separates nothing") {
 TEST_CASE("names with commas in them are known by the blanks behind those") {
   const Recording r = read_text(table("t,Temp, inside,y", 9, shortest_row));
   CHECK(channels_of(r) == "Temp, inside[] y[] ");
+  CHECK_NOTHROW(failure(table(" t , x , y,z", 9, shortest_row)));
 }
 
 TEST_CASE("rows that cannot be read are dropped and counted where that is asked for") {
@@ -246,6 +247,13 @@ TEST_CASE("facts in front of a table are used: scales of .gcsv, the rate of SLIS
       [](int k) { return fmt::format("{}", k * 7919 % 100); }));
   CHECK(slist.info.time.rate_hz == 20);
   CHECK(slist.samples[0].size() == 50);
+}
+
+TEST_CASE("a table that is nothing but its first line is told so") {
+  ReadOptions none;
+  none.header = "no";
+  CHECK_THAT(failure(",a", none), Contains("E0311") && Contains("log.csv:1:"));
+  CHECK_THAT(failure("TIMESERIES A, 5 samples, 20 sps, SLIST\n"), Contains("error"));
 }
 
 TEST_CASE("units with brackets are units, in names and apart") {
