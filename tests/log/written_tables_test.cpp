@@ -83,6 +83,12 @@ TEST_CASE("quoted cells hold line ends, quotes and delimiters, in blocks of any 
   CHECK_THAT(failure(text + "300,oops,\"\"\n"), Contains("log.csv:902:5 "));
 }
 
+TEST_CASE("integers are known as such beside quoted cells that hold commas and fractions") {
+  const std::string text = table(
+      "t,n,note", 300, [](int k) { return fmt::format("{},{},\"0.5,1.5\n2.5,x\"", k, k % 7); });
+  CHECK(read_text(text).info.channels[0].integer);
+}
+
 TEST_CASE("a quote that never closes is named where it opens") {
   const std::string text = table("t,x,note", 40, [](int k) {
     return fmt::format("{},{},{}", k, 0.5 * k, k == 20 ? "\"open" : "\"shut\"");
