@@ -83,6 +83,12 @@ TEST_CASE("quoted cells hold line ends, quotes and delimiters, in blocks of any 
   CHECK_THAT(failure(text + "300,oops,\"\"\n"), Contains("log.csv:902:5 "));
 }
 
+TEST_CASE("integers are known as such beside quoted cells that hold commas and fractions") {
+  const std::string text = table(
+      "t,n,note", 300, [](int k) { return fmt::format("{},{},\"0.5,1.5\n2.5,x\"", k, k % 7); });
+  CHECK(read_text(text).info.channels[0].integer);
+}
+
 TEST_CASE("a quote that never closes is named where it opens") {
   const std::string text = table("t,x,note", 40, [](int k) {
     return fmt::format("{},{},{}", k, 0.5 * k, k == 20 ? "\"open" : "\"shut\"");
@@ -185,6 +191,7 @@ TEST_CASE("comments may begin with a semicolon where it separates nothing") {
 TEST_CASE("names with commas in them are known by the blanks behind those") {
   const Recording r = read_text(table("t,Temp, inside,y", 9, shortest_row));
   CHECK(channels_of(r) == "Temp, inside[] y[] ");
+  CHECK_NOTHROW(failure(table(" t , x , y,z", 9, shortest_row)));
 }
 
 TEST_CASE("rows that cannot be read are dropped and counted where that is asked for") {
@@ -246,6 +253,13 @@ TEST_CASE("facts in front of a table are used: scales of .gcsv, the rate of SLIS
       [](int k) { return fmt::format("{}", k * 7919 % 100); }));
   CHECK(slist.info.time.rate_hz == 20);
   CHECK(slist.samples[0].size() == 50);
+}
+
+TEST_CASE("a table that is nothing but its first line is told so") {
+  ReadOptions none;
+  none.header = "no";
+  CHECK_THAT(failure(",a", none), Contains("E0311") && Contains("log.csv:1:"));
+  CHECK_THAT(failure("TIMESERIES A, 5 samples, 20 sps, SLIST\n"), Contains("error"));
 }
 
 TEST_CASE("units with brackets are units, in names and apart") {

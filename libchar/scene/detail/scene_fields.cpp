@@ -434,6 +434,7 @@ const Fields<ReadOptions>& scene_reading_fields() {
                                                     "to_s",
                                                     "missing",
                                                     "overflow_as_missing",
+                                                    "drop_bad_rows",
                                                     "skip_repeated_header"},
                                                    Written::when_set);
   return rows;

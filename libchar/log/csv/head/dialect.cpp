@@ -194,8 +194,9 @@ void choose_header(Study& study) {
                  "unknown header option",
                  option,
                  "use auto, yes or no"});
-  const TableStart start = table_start(study);
+  TableStart start = table_start(study);
   const std::vector<Line> lines = study.sample;
+  if (!start.names) start.data = std::min(start.data, lines.size() - 1);
   const std::size_t first = start.names.value_or(start.data);
   const auto place = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
   study.preamble.assign(lines.begin(), lines.begin() + place(first));

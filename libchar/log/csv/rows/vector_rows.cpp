@@ -219,7 +219,10 @@ __attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text,
   const std::size_t rows =
       std::min(max_rows, find_separators(text, delimiter, max_rows * width, scratch) / width);
   std::size_t good = 0;
+  std::vector<char> fractional(width, 0);  // before the batch
   for (std::size_t first = 0; first < rows; first = good) {
+    for (std::size_t c = 0; c < width; ++c)
+      if (columns[c].fractional != nullptr) fractional[c] = *columns[c].fractional;
     good = std::min(rows, first + kBatch);
     const std::size_t whole = good;
     for (std::size_t c = 0; c < width; ++c) {
@@ -236,7 +239,15 @@ __attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text,
           break;
       }
     }
-    if (good != whole) break;
+    if (good == whole) continue;
+    // What was noted of rows behind the last good one does not count: their cells may stand elsewhere.
+    for (std::size_t c = 0; c < width; ++c) {
+      if (columns[c].use != VectorColumn::Use::value) continue;
+      if (columns[c].fractional != nullptr) *columns[c].fractional = fractional[c];
+      take_values(
+          Column{text.data(), scratch.data(), width, c, delimiter, crlf}, first, good, columns[c]);
+    }
+    break;
   }
   return {good, good == 0 ? 0 : scratch[good * width - 1] + std::size_t{1}};
 }
