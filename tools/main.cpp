@@ -4,6 +4,7 @@
 #include <exception>
 #include <span>
 
+#include "help/flag_names.hpp"
 #include "help/generate.hpp"
 #include "libchar/core/process/thread_limit.hpp"
 #include "libchar/core/process/version.hpp"
@@ -52,6 +53,7 @@ int main(int argc, char** argv) {
       if (command.size() > 1 && verb.name == command[1])
         for (const OptionUsage& option : verb.options)
           call.session.flags.insert(option.flags.begin(), option.flags.end());
+    set_flags_of_verb(call.session.flags);
     set_memory_hint(call.session);
     if (const auto text = line.run(call.session.command)) print(*text);
   });

@@ -286,8 +286,9 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   word("--header", options.header, usual.header);
   word("--encoding", options.encoding, usual.encoding);
   if (options.skip_rows != 0) flags += fmt::format(" --skip-rows {}", options.skip_rows);
-  for (const double mark : options.missing.marks)
-    flags += fmt::format(" --missing={}", libchar::shortest(mark));
+  std::vector<std::string> marks;
+  for (const double mark : options.missing.marks) marks.push_back(libchar::shortest(mark));
+  if (!marks.empty()) flags += fmt::format(" --missing={}", fmt::join(marks, ","));
   if (options.missing.overflow) flags += " --overflow nan";
   if (options.missing.bad_rows) flags += " --bad-rows drop";
   if (options.skip_repeated_header) flags += " --repeated-header skip";

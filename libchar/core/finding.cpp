@@ -169,19 +169,21 @@ Finding& Findings::entry(std::string_view code, std::string_view sentence) {
   return list_.back();
 }
 
-void Findings::add(std::string_view code,
-                   std::string_view sentence,
-                   std::string_view place,
-                   std::uint64_t count) {
+Finding& Findings::add(std::string_view code,
+                       std::string_view sentence,
+                       std::string_view place,
+                       std::uint64_t count) {
   Finding& one = entry(code, sentence);
   one.count += count;
   if (!place.empty() && one.where.rows.size() < 3) one.where.rows.emplace_back(place);
+  return one;
 }
 
 void Findings::merge(const Findings& other) {
   for (const Finding& later : other.list_) {
     Finding& one = entry(later.code, later.sentence);
     one.count += later.count;
+    if (one.help.empty()) one.help = later.help;
     for (const std::string& row : later.where.rows)
       if (one.where.rows.size() < 3) one.where.rows.push_back(row);
   }

@@ -139,10 +139,10 @@ std::string one_line(const Finding& finding, std::string_view file, bool colours
 class Findings {
  public:
   /// Counts `count` more cases of the kind `code`. The sentence of the first call for a code is kept.
-  void add(std::string_view code,
-           std::string_view sentence,
-           std::string_view place = {},
-           std::uint64_t count = 1);
+  Finding& add(std::string_view code,
+               std::string_view sentence,
+               std::string_view place = {},
+               std::uint64_t count = 1);
   void merge(const Findings& other);
   /// What is no longer so.
   void remove(std::string_view code);

@@ -854,6 +854,9 @@ void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
   Finding stuck = finding(
       "stuck",
       fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck));
+  constexpr double kMuch = 0.01;
+  if (static_cast<double>(q.longest_stuck) > kMuch * static_cast<double>(q.samples))
+    stuck.severity = Severity::bad;
   // Where values repeat anyway, as between coarse steps, runs of them are no sign.
   if (static_cast<double>(q.repeats - std::min(q.repeats, q.longest_stuck)) <
       kFewRepeats * static_cast<double>(q.samples))

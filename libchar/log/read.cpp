@@ -171,7 +171,18 @@ using ScaleNotes =
 // these are not of one quantity.
 double conversion(const std::string& stated, const Channel& channel) {
   const auto from = find_unit(stated), to = find_unit(channel.unit);
-  if (!from || !to || from->quantity != to->quantity || from->to_si == to->to_si) return 1;
+  if (!from || !to) return 1;
+  if (from->quantity != to->quantity)
+    throw Error({ErrorKind::usage,
+                 "E0331",
+                 "",
+                 fmt::format("{} is in {} in the log, which is no {}",
+                             printable(channel.name),
+                             printable(stated, 20),
+                             printable(channel.unit, 20)),
+                 "",
+                 fmt::format("`channel_scale` {}=1, if the log is wrong", channel.name)});
+  if (from->to_si == to->to_si) return 1;
   if (from->quantity == Quantity::temperature || from->quantity == Quantity::concentration)
     throw Error(
         {ErrorKind::usage,
@@ -218,6 +229,8 @@ std::vector<double> dress_channels(std::vector<Channel>& channels,
       factors[c] = conversion(stated[c].unit, channel);
       if (factors[c] != 1) count = "converted: 1 " + printable(stated[c].unit);
     }
+    channel.stated = stated[c].unit;
+    channel.factor = factors[c];
     if (factors[c] == 1) continue;
     channel.integer = false;
     if (notes != nullptr)

@@ -24,6 +24,8 @@ struct Channel {
   std::uint64_t every =
       1;  ///< grid points from one of its values to the next, where it is slower than the rows of its table
   double rate_hz = 0;  ///< of its own, where it was read on a grid of its own; 0: that of the log
+  std::string stated = {};  ///< unit that the log says
+  double factor = 1;        ///< that the numbers of the log were multiplied with
 };
 
 /// One stream of messages, or one table, of a log that holds several: each has a clock of its own.

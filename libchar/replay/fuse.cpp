@@ -119,7 +119,7 @@ class Fusing {
   void find_channels();
   std::string channel_of(const LearntSensor& sensor) const;
   void check_map() const;
-  void check_unit(const LearntSensor& sensor, const Channel& channel) const;
+  double to_recorded(const LearntSensor& sensor, const Channel& channel) const;
   void without(const std::string& sensor);
   void describe_scene();
   void drop_frozen();
@@ -144,7 +144,9 @@ class Fusing {
   Progress& progress_;
   const LearntAlgorithm& algorithm_;
   const fusion::Entry* entry_ = nullptr;
+  bool dressed_ = false;                // somebody says what the channels of the log are in
   std::vector<std::size_t> present_;    // sensors of the file that the log has
+  std::vector<double> to_recorded_;     // of these
   std::vector<std::ptrdiff_t> row_;     // of each sensor of the file in the algorithm; -1: left out
   std::vector<std::size_t> sensor_of_;  // of each row of the algorithm
   Scene scene_;
@@ -196,8 +198,16 @@ std::string Fusing::channel_of(const LearntSensor& sensor) const {
   return sensor.channel;
 }
 
-void Fusing::check_unit(const LearntSensor& sensor, const Channel& channel) const {
-  if (!same_unit(sensor.recorded_unit, channel.unit))
+// What takes the numbers of a channel to the unit that the sensor's had.
+double Fusing::to_recorded(const LearntSensor& sensor, const Channel& channel) const {
+  const bool as_read = dressed_ || !sensor.cross.empty() || channel.stated.empty();
+  const std::string& unit = as_read ? channel.unit : channel.stated;
+  if (same_unit(sensor.recorded_unit, unit)) return 1;
+  const auto from = find_unit(unit), to = find_unit(sensor.recorded_unit);
+  const bool scales = from && to && from->quantity == to->quantity &&
+                      from->quantity != Quantity::temperature &&
+                      from->quantity != Quantity::concentration;
+  if (!scales)
     refuse_fuse(ErrorKind::input,
                 "E0936",
                 log_,
@@ -205,8 +215,9 @@ void Fusing::check_unit(const LearntSensor& sensor, const Channel& channel) cons
                             printable(channel.name, 40),
                             printable(sensor.name, 40),
                             sensor.recorded_unit),
-                channel.unit,
+                unit,
                 "convert the log, or say with `units` what the channels are in");
+  return from->to_si / to->to_si;
 }
 
 // A sensor that the log does not have.
@@ -225,6 +236,9 @@ void Fusing::without(const std::string& sensor) {
 
 void Fusing::find_channels() {
   check_map();
+  const ReadOptions& reading = options_.reading;
+  dressed_ =
+      !reading.units.empty() || !reading.channel_unit.empty() || !reading.channel_scale.empty();
   const std::vector<Channel> channels = channels_of(log_, options_.reading, progress_);
   std::vector<std::string> names;
   names.reserve(channels.size());
@@ -240,7 +254,8 @@ void Fusing::find_channels() {
     result_.sensors.push_back({sensor.name, "", sensor.unit});
     const bool axes = !aligned || std::all_of(sensor.cross.begin(), sensor.cross.end(), there);
     if (there(channel) && axes) {
-      check_unit(sensor, channels[static_cast<std::size_t>(find(channel))]);
+      to_recorded_.push_back(
+          to_recorded(sensor, channels[static_cast<std::size_t>(find(channel))]));
       result_.sensors[i].channel = channel;
       present_.push_back(i);
     } else if (channel != sensor.channel) {
@@ -278,13 +293,16 @@ void Fusing::describe_scene() {
   const bool tilt = !learnt_.tilt.gyroscope.empty();
   if (tilt) scene_.tilt = SceneTilt{};
   if (!learnt_.interpolation.empty()) scene_.align = SceneAlign{};
-  for (const std::size_t i : present_) {
+  for (std::size_t k = 0; k < present_.size(); ++k) {
+    const std::size_t i = present_[k];
     const LearntSensor& from = learnt_.sensors[i];
     SceneSensor sensor;
     sensor.name = from.name;
     sensor.channel = result_.sensors[i].channel;
     sensor.h = from.h;
-    sensor.scale = from.scale;
+    sensor.scale = from.scale * to_recorded_[k];
+    if (!dressed_ && from.cross.empty())
+      scene_.reading.channel_scale.push_back(sensor.channel + "=1");
     sensor.unit =
         from.unit.empty() && (std::abs(from.scale) == 1 || tilt) ? from.recorded_unit : from.unit;
     sensor.cross = from.cross;

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <sstream>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/decimal.hpp"
@@ -266,7 +267,10 @@ TEST_CASE("fuse: what does not fit is refused in a sentence") {
   const FuseBench bench(kNoisyScene + "reference: x\nlearning: [0, 15]\n");
   bench.bench.put("rad.csv",
                   four_sensors({.head = "t[s],a[rad/s],b[deg/s],c[deg/s],d[deg/s],x[deg/s]"}));
-  CHECK_THAT(bench.refusal(by("mean"), "rad.csv"), Contains("rad/s") && Contains("another unit"));
+  CHECK(bench.refusal(by("mean"), "rad.csv").empty());  // converted: see below
+  bench.bench.put("volt.csv",
+                  four_sensors({.head = "t[s],a[V],b[deg/s],c[deg/s],d[deg/s],x[deg/s]"}));
+  CHECK_THAT(bench.refusal(by("mean"), "volt.csv"), Contains("V") && Contains("another unit"));
   bench.bench.put("dps.csv", four_sensors({.head = "t[s],a[dps],b,c[°/s],d[deg/s],x"}));
   CHECK(bench.refusal(by("mean"), "dps.csv").empty());
   CHECK_THAT(bench.refusal(by("meen")), Contains("did you mean mean?"));
@@ -278,6 +282,29 @@ TEST_CASE("fuse: what does not fit is refused in a sentence") {
   KeptColumns kept;
   const FuseResult fast = bench.fuse_log(kept, by("mean"), "fast.csv");
   CHECK(fast.warnings.find("another_rate") != nullptr);
+}
+
+TEST_CASE("fuse: a channel in another unit of its quantity is converted") {
+  const FuseBench bench(kNoisyScene + "reference: x\nlearning: [0, 15]\n");
+  const std::string head = "t[s],a[rad/s],b[deg/s],c[deg/s],d[deg/s],x[deg/s]";
+  std::string turned = head + "\n";  // the numbers of the first channel in rad/s
+  std::istringstream lines(four_sensors());
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    const std::size_t from = line.find(',') + 1, to = line.find(',', from);
+    const double value = std::stod(line.substr(from, to - from));
+    turned += line.substr(0, from) + shortest(value / 57.29577951308232) + line.substr(to) + "\n";
+  }
+  bench.bench.put("turned.csv", turned);
+  KeptColumns as_it_was, converted;
+  bench.fuse_log(as_it_was, by("mean"));
+  bench.fuse_log(converted, by("mean"), "turned.csv");
+  double most = 0;
+  for (std::size_t k = 0; k < converted.columns[0].size(); ++k)
+    most = std::max(most, std::abs(converted.columns[0][k] - as_it_was.columns[0][k]));
+  CHECK(converted.columns[0].size() == as_it_was.columns[0].size());
+  CHECK(most < 1e-12);
 }
 
 TEST_CASE("fuse: at another rate delays keep their seconds") {

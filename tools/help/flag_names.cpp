@@ -96,6 +96,11 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"x_range", "--x-range"},
                                {"y_range", "--y-range"}};
 
+/// What mends a record before its noise is fitted: other verbs name the one that does it.
+constexpr std::string_view kOfAnalysis[] = {"--frozen", "--still", "--temperature", "--unwrap"};
+
+const std::set<std::string>* g_of_verb = nullptr;  // of the verb that runs
+
 /// `used` gets the flags.
 std::string replaced(const std::string& message, std::vector<std::string_view>& used) {
   std::string text;
@@ -111,6 +116,10 @@ std::string replaced(const std::string& message, std::vector<std::string_view>& 
       continue;
     }
     text += message.substr(done, open - done);
+    if (g_of_verb != nullptr && !g_of_verb->contains(std::string(row->flag)) &&
+        std::find(std::begin(kOfAnalysis), std::end(kOfAnalysis), row->flag) !=
+            std::end(kOfAnalysis))
+      text += "characterize ";
     text += row->flag;
     used.push_back(row->flag);
     done = close + 1;
@@ -120,6 +129,10 @@ std::string replaced(const std::string& message, std::vector<std::string_view>& 
 }
 
 }  // namespace
+
+void set_flags_of_verb(const std::set<std::string>& flags) {
+  g_of_verb = &flags;
+}
 
 std::string with_flags(const std::string& message) {
   std::vector<std::string_view> used;

@@ -9,6 +9,9 @@
 
 namespace sensorchar {
 
+/// The flags that the verb has, which must live as long as the program.
+void set_flags_of_verb(const std::set<std::string>& flags);
+
 /// The text with every option of the library in backquotes replaced by its flag; what has no flag
 /// stays.
 std::string with_flags(const std::string& message);

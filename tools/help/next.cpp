@@ -1,7 +1,11 @@
 #include "help/next.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "help/flag_names.hpp"
@@ -17,21 +21,45 @@ namespace {
 
 using namespace libchar;
 
-/// " --still auto": what mends the bad findings, each once.
-std::string mending_flags(const Characterization& result) {
-  std::string flags;
-  std::set<std::string> given;
-  for (const ChannelResult& channel : result.channels)
-    for (const Finding& one : judge(channel).findings) {
-      if (one.severity != Severity::bad) continue;
+using Settings = std::map<std::string, std::set<std::string>>;  ///< values of each option
+
+Settings settings_of(const std::vector<Finding>& findings, Severity severity) {
+  Settings out;
+  for (const Finding& one : findings)
+    if (one.severity == severity)
       for (const Finding::Help& help : one.help)
-        for (const Finding::Setting& setting : help.options) {
-          const std::string flag =
-              " " + with_flags("`" + setting.option + "`") + " " + shell_word(setting.value);
-          if (given.insert(flag).second) flags += flag;
-        }
+        for (const Finding::Setting& setting : help.options)
+          out[setting.option].insert(setting.value);
+  return out;
+}
+
+/// " --missing=-99,-999": what mends the worst findings, by options that the verb has. Marks and wraps move a sensor that
+/// does not move: whether it does is seen without them.
+std::string mending_flags(const std::set<std::string>* of_verb,
+                          const std::vector<Finding>& findings) {
+  Settings settings = settings_of(findings, Severity::bad);
+  if (settings.empty()) settings = settings_of(findings, Severity::caution);
+  if (settings.size() > 1 || has(findings, "moves_throughout")) settings.erase("still");
+  std::string flags;
+  for (const auto& [option, values] : settings) {
+    const std::string words = with_flags("`" + option + "`");
+    const std::string flag =
+        words.substr(words.rfind(' ') + 1);  // "characterize --frozen" elsewhere
+    if (of_verb != nullptr && !of_verb->contains(flag)) continue;
+    if (option == "missing") {
+      flags += fmt::format(" {}={}", flag, fmt::join(values, ","));
+      continue;
     }
+    for (const std::string& value : values) flags += " " + flag + " " + shell_word(value);
+  }
   return flags;
+}
+
+std::vector<Finding> findings_of(const Characterization& result) {
+  std::vector<Finding> out;
+  for (const ChannelResult& channel : result.channels)
+    for (const Finding& one : judge(channel).findings) out.push_back(one);
+  return out;
 }
 
 /// The command as it was given, its results replaced.
@@ -82,11 +110,24 @@ std::string default_folder(const std::string& input, const std::string& kind) {
   return (stem.empty() || stem == "-" || stem == "." || stem == ".." ? "log" : stem) + "-" + kind;
 }
 
+std::string mending_flags(const std::vector<Finding>& findings) {
+  return mending_flags(nullptr, findings);
+}
+
+std::string mended_command(const Session& session,
+                           const std::vector<Finding>& findings,
+                           const std::string& folder) {
+  const std::string flags = mending_flags(&session.flags, findings);
+  return flags.empty() ? "" : command_again(session, flags, folder);
+}
+
 std::string next_after(const Session& session,
                        const Characterization& result,
                        const std::string& folder) {
-  if (const std::string flags = mending_flags(result); !flags.empty())
-    return command_again(session, flags, folder);
+  if (!(result.log.time.rate_hz > 0)) return command_again(session, " --rate RATE", folder);
+  if (const std::string mended = mended_command(session, findings_of(result), folder);
+      !mended.empty())
+    return mended;
   const auto usable =
       std::find_if(result.channels.begin(), result.channels.end(), [](const auto& c) {
         return c.fit && worst_of(judge(c).findings) != Severity::bad;

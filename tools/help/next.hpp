@@ -12,6 +12,14 @@ namespace sensorchar {
 /// "imu-report" of "logs/imu.csv": in the current folder, for results of this kind.
 std::string default_folder(const std::string& input, const std::string& kind = "report");
 
+/// " --missing=-999": options of characterize that mend the worst of these findings; "" where none does.
+std::string mending_flags(const std::vector<libchar::Finding>& findings);
+
+/// The same command again, with options that mend the worst of these findings; "" where none does.
+std::string mended_command(const Session& session,
+                           const std::vector<libchar::Finding>& findings,
+                           const std::string& folder);
+
 /// Of a characterization in a folder: the same command with what mends the worst that was found, else
 /// the file of an IMU for Kalibr, else a figure. "" where nothing could be fitted.
 std::string next_after(const Session& session,

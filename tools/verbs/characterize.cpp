@@ -21,6 +21,7 @@
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/text/shell_word.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/report/html/fleet_report.hpp"
@@ -123,6 +124,12 @@ void say_written(const Session& session,
   if (!session.terminal.quiet()) print(written + "\n");
 }
 
+std::string shell_words(const std::vector<std::string>& logs) {
+  std::string words;
+  for (const std::string& log : logs) words += (words.empty() ? "" : " ") + shell_word(log);
+  return words;
+}
+
 void run_one_by_one(Session& session,
                     const CharacterizeVerb& verb,
                     const CharacterizeOptions& options,
@@ -146,6 +153,8 @@ void run_one_by_one(Session& session,
     say_written(session, paths_of(outputs), removed);
     if (verb.logs.size() == 1) say_next(session, next_after(session, result, folder.string()));
   }
+  if (!verb.json && verb.logs.size() > 1)
+    say_next(session, "sensorchar characterize " + shell_words(verb.logs) + " --lot -o lot-report");
   if (verb.json) print(dump_json(verb.logs.size() == 1 ? documents[0] : documents));
 }
 

@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "help/next.hpp"
+#include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/shell_word.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/report/text/inspection_text.hpp"
@@ -23,8 +25,25 @@ struct InspectVerb {
   bool json = false;
 };
 
-std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) {
-  const std::string flags = reading_flags(verb.reading, info);
+std::string next_command(const InspectVerb& verb, const libchar::Inspection& inspection) {
+  const libchar::LogInfo& info = inspection.info;
+  std::vector<libchar::Finding> found;
+  libchar::ReadOptions reading = verb.reading;
+  for (const libchar::ChannelQuality& quality : inspection.quality)
+    for (const libchar::Finding& one : quality.findings) {
+      found.push_back(one);
+      for (const libchar::Finding::Help& help : one.help)
+        for (const libchar::Finding::Setting& setting : help.options)
+          if (setting.option == "missing")
+            reading.missing.marks.push_back(libchar::parse_number(setting.value));
+    }
+  std::sort(reading.missing.marks.begin(), reading.missing.marks.end());
+  reading.missing.marks.erase(
+      std::unique(reading.missing.marks.begin(), reading.missing.marks.end()),
+      reading.missing.marks.end());
+  if (!reading.missing.marks.empty())  // seen with them, the rest may be none
+    std::erase_if(found, [](const libchar::Finding& one) { return !one.help.empty(); });
+  const std::string flags = reading_flags(reading, info);
   const std::string log = libchar::shell_word(info.file);
   if (libchar::is_listing(info)) {
     for (const bool sensor : {true, false})
@@ -42,9 +61,10 @@ std::string next_command(const InspectVerb& verb, const libchar::LogInfo& info) 
   if (info.time.rate_hz <= 0)
     return fmt::format(
         "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags);
-  return fmt::format("  next: sensorchar characterize {}{} -o {}\n",
+  return fmt::format("  next: sensorchar characterize {}{}{} -o {}\n",
                      log,
                      flags,
+                     mending_flags(found),
                      libchar::shell_word(default_folder(info.file)));
 }
 
@@ -61,7 +81,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
     print_text((inspections.size() > 1 ? "\n" : "") +
                libchar::inspection_text(inspections.back(), table_width()));
-    print(next_command(verb, info));
+    print(next_command(verb, inspections.back()));
   }
   if (!verb.json) return;
   std::vector<const libchar::LogInfo*> inputs;

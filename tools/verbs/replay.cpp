@@ -177,8 +177,14 @@ void write_scene(const Session& session,
   print(dump_json(document));
 }
 
-// The log fused by what is recommended; "" where nothing is, or where there is no log.
-std::string next_after(const ReplayVerb& verb, const Scene& scene, const ReplayResult& result) {
+// The replay of mended samples; else the log fused by what is recommended, "" where nothing is or there is no log.
+std::string next_after(const Session& session,
+                       const ReplayVerb& verb,
+                       const Scene& scene,
+                       const ReplayResult& result) {
+  if (const std::string mended = mended_command(session, result.warnings.list(), verb.folder);
+      !mended.empty())
+    return mended;
   if (result.learnt.recommended.empty() || scene.recording.empty() || result.logs.empty())
     return "";
   return fmt::format("sensorchar fuse {}{} --with {} -o {}",
@@ -236,7 +242,7 @@ void run_and_report(Session& session,
   if (!removed.empty())
     written += fmt::format("\nremoved, of an earlier run: {}", fmt::join(removed, " "));
   if (!session.terminal.quiet()) print(written + "\n");
-  say_next(session, next_after(verb, scene, result));
+  say_next(session, next_after(session, verb, scene, result));
 }
 
 void print_algorithms(const Session& session, bool json) {

@@ -116,6 +116,7 @@ class Finish {
 
 // By an option that was given.
 bool Finish::is_answered(const Finding& one) const {
+  if (one.code == "spiky") return options_.unwrap > 0 || options_.frozen > 1;
   return (options_.unwrap > 0 && one.code == "phase_wraps") ||
          (options_.frozen > 1 && one.code == "stuck");
 }
@@ -301,7 +302,8 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
         const std::string& unit = result.channel.unit;
         if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
         options.clock = options_.data != SampleKind::rate;
-        options.difference_kurtosis = found_.difference_kurtosis;
+        if (options_.unwrap == 0 && options_.frozen <= 1)  // else of what is left
+          options.difference_kurtosis = found_.difference_kurtosis;
         const bool of_kept = is_whole() || read_.temperature;
         result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options)
                              : fit_of_sums(octaves, rate_hz, options);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/process/version.hpp"
@@ -71,9 +72,28 @@ double value_or_zero(const Figure& figure) {
   return figure.value.value_or(0);
 }
 
+namespace {
+
+/// What readings of a number or a unit hold besides ASCII, in ASCII.
+std::string in_ascii(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> kSpelt[] = {
+      {"×10", "e"}, {"×", "x"},    {"±", "+/-"}, {"⁻", "-"},     {"⁰", "0"},    {"¹", "1"},
+      {"²", "2"},   {"³", "3"},    {"⁴", "4"},   {"⁵", "5"},     {"⁶", "6"},    {"⁷", "7"},
+      {"⁸", "8"},   {"⁹", "9"},    {"µ", "u"},   {"√", "sqrt "}, {"°", "deg "}, {"·", "*"},
+      {"≤", "<="},  {"≥", ">="},   {"…", ".."},  {"–", "-"},     {"−", "-"},    {"χ", "chi"},
+      {"τ", "tau"}, {"σ", "sigma"}};
+  for (const auto& [from, to] : kSpelt)
+    for (std::size_t at = text.find(from); at != std::string::npos;
+         at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  return text;
+}
+
+}  // namespace
+
 std::string comment_text(std::string_view text) {
   std::string out;
-  for (const char c : printable(text)) {
+  for (const char c : in_ascii(printable(text))) {
     const bool ascii = static_cast<unsigned char>(c) < 0x80;
     // One mark for each character outside ASCII, not one a byte.
     if (!ascii && (static_cast<unsigned char>(c) & 0xC0U) == 0x80U) continue;

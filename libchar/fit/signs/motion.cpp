@@ -40,7 +40,8 @@ constexpr double kHarmless =
 
 /// Logarithms of the activities, a block each.
 struct Activity {
-  std::size_t block = 0;  ///< values
+  std::size_t block = 0;     ///< values
+  std::vector<char> unseen;  ///< blocks that were missing for the most part
   std::vector<double> fine;
   std::vector<std::vector<double>> coarse;  ///< of means of four and of sixteen
 };
@@ -152,8 +153,12 @@ std::optional<Agreeing> quiet_window(std::span<const double> values,
 }
 
 std::optional<Agreeing> agreeing(const std::vector<double>& values,
-                                 const std::vector<char>& filled) {
-  std::vector<double> sorted = values;
+                                 const std::vector<char>& filled,
+                                 const std::vector<char>& unseen) {
+  std::vector<double> sorted;
+  for (std::size_t b = 0; b < values.size(); ++b)
+    if (unseen[b] == 0) sorted.push_back(values[b]);
+  if (sorted.size() < 8) return std::nullopt;
   std::sort(sorted.begin(), sorted.end());
   // 2 z((1 + share) / 2)
   for (const auto& [share, width] : {std::pair{0.5, 1.349}, {0.25, 0.6373}, {0.125, 0.3145}}) {
@@ -220,18 +225,20 @@ void tidy(const Activity& activity, double centre, std::vector<char>& moving) {
 std::vector<char> filled_blocks(const Activity& activity) {
   std::vector<char> filled(activity.fine.size());
   for (std::size_t b = 0; b < filled.size(); ++b)
-    filled[b] = activity.coarse[0][b] > activity.fine[b] + std::log(kFactor) ? 1 : 0;
+    filled[b] =
+        activity.unseen[b] != 0 || activity.coarse[0][b] > activity.fine[b] + std::log(kFactor) ? 1
+                                                                                                : 0;
   return filled;
 }
 
 /// Blocks that move, by any of the activities; none where no activity agrees with itself.
 std::optional<std::vector<char>> moving_blocks(const Activity& activity) {
   const std::vector<char> filled = filled_blocks(activity);
-  const std::optional<Agreeing> fine = agreeing(activity.fine, filled);
+  const std::optional<Agreeing> fine = agreeing(activity.fine, filled, activity.unseen);
   if (!fine) return std::nullopt;
   std::vector<char> moving = louder(activity.fine, *fine);
   for (const std::vector<double>& coarse : activity.coarse) {
-    const std::optional<Agreeing> rest = agreeing(coarse, filled);
+    const std::optional<Agreeing> rest = agreeing(coarse, filled, activity.unseen);
     if (!rest) return std::nullopt;
     const std::vector<char> slowly = louder(coarse, *rest);
     for (std::size_t b = 0; b < moving.size(); ++b) moving[b] |= slowly[b];
@@ -250,10 +257,12 @@ std::vector<StrengthChange> changes_of(const Activity& activity,
   std::sort(sorted.begin(), sorted.end());
   if (shortest_half(sorted, 0.5, 1.349).spread < 1e-6) return {};
   EventSeries logarithms{activity.fine, start_s, block_s, 1, {}};
-  for (const Run& run : runs_of(moving, 1)) {
+  std::vector<char> left_out = moving;
+  for (std::size_t b = 0; b < left_out.size(); ++b) left_out[b] |= activity.unseen[b];
+  for (const Run& run : runs_of(left_out, 1)) {
     const double before =
-        run.from > 0 ? activity.fine[run.from - 1] : activity.fine[run.to % moving.size()];
-    const double after = run.to < moving.size() ? activity.fine[run.to] : before;
+        run.from > 0 ? activity.fine[run.from - 1] : activity.fine[run.to % left_out.size()];
+    const double after = run.to < left_out.size() ? activity.fine[run.to] : before;
     for (std::size_t b = run.from; b < run.to; ++b)
       logarithms.value[b] = before + (after - before) * static_cast<double>(b - run.from + 1) /
                                          static_cast<double>(run.length() + 1);
@@ -343,6 +352,22 @@ void describe(Motion& motion, double duration_s) {
   motion.findings.push_back(std::move(changed));
 }
 
+/// Blocks that were missing for more than half.
+std::vector<char> unseen_blocks(const EventSeries& series, std::size_t blocks, double block_s) {
+  std::vector<double> missing_s(blocks, 0);
+  for (const Interval& gap : series.unseen_s) {
+    const double from = std::max(0.0, gap.low - series.start_s), to = gap.high - series.start_s;
+    for (auto b = static_cast<std::size_t>(from / block_s); b < blocks; ++b) {
+      const double begin = static_cast<double>(b) * block_s;
+      if (begin >= to) break;
+      missing_s[b] += std::min(to, begin + block_s) - std::max(from, begin);
+    }
+  }
+  std::vector<char> unseen(blocks);
+  for (std::size_t b = 0; b < blocks; ++b) unseen[b] = 2 * missing_s[b] > block_s ? 1 : 0;
+  return unseen;
+}
+
 /// What motion adds to the scatter of all blocks, by what the still ones have.
 double louder_by_motion(const Activity& activity, const std::vector<char>& moving) {
   double most = 1;
@@ -386,8 +411,9 @@ Motion find_motion(const EventSeries& series) {
   if (series.value.size() < kFewestValues || share_of_repeats(series.value) > kRepeats)
     return motion;
   motion.tested = true;
-  const Activity activity = activity_of(series.value);
+  Activity activity = activity_of(series.value);
   const double block_s = static_cast<double>(activity.block) * series.step_s;
+  activity.unseen = unseen_blocks(series, activity.fine.size(), block_s);
   const std::optional<std::vector<char>> moving = moving_blocks(activity);
   motion.whole = !moving;
   if (moving) {

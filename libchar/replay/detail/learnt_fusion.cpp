@@ -49,6 +49,26 @@ fusion::ChannelLimits limits_of_row(const LearntAlignment& alignment, std::size_
   return out;
 }
 
+// From the numbers and the unit that the log has to those that are fused, whatever the reader made of them. The further axes of a
+// device are as the reader made them, and so is its own.
+void set_units(const SourceInfo& source,
+               const Scene& scene,
+               const std::string& read_in,
+               LearntSensor& out) {
+  std::string stated = scene.reading.units.empty() ? read_in : "";
+  double factor = 1;
+  if (!source.logs.empty() && out.cross.empty())
+    for (const Channel& channel : source.logs[0].channels)
+      if (channel.name == out.channel && !channel.stated.empty()) {
+        stated = channel.stated;
+        factor = channel.factor;
+      }
+  out.recorded_unit = stated;
+  if (out.unit.empty() && stated != read_in && (std::abs(out.scale) == 1 || scene.tilt))
+    out.unit = read_in;
+  out.scale *= factor;
+}
+
 LearntSensor learnt_sensor(const Scene& scene,
                            const ReplayPlan& plan,
                            const Instants& instants,
@@ -61,12 +81,9 @@ LearntSensor learnt_sensor(const Scene& scene,
   out.channel = from.channel;
   out.unit = from.unit;
   out.scale = from.scale;
-  // What the scene said in place of the log cannot be compared with what another log says.
-  const std::string& recorded = instants.source().info().units[i];
-  if (scene.reading.units.empty())
-    out.recorded_unit = recorded;
-  else if (out.unit.empty() && (std::abs(out.scale) == 1 || scene.tilt))
-    out.unit = recorded;
+  out.cross = from.cross;
+  const SourceInfo& source = instants.source().info();
+  set_units(source, scene, source.units[i], out);
   if (!scene.tilt) out.h.assign(h.row(row).begin(), h.row(row).end());
   add_noise(plan.array, i, out);
   out.left_out =

@@ -30,7 +30,8 @@ constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
 void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, Findings& to) {
   for (const Finding& one : quality.findings)
     if (one.severity == Severity::bad && one.code != "no_value")
-      to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one));
+      to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one)).help =
+          one.help;
 }
 
 // The first reading, for length and rate, sees which channels have samples, and keeps them where they are few.
@@ -218,6 +219,10 @@ void SceneSource::scan(Progress& progress) {
     for (const std::string& name : wanted_)
       if (once.insert(name).second) reading_.channels.push_back(name);
   }
+  // A scale of the scene's own is of the numbers as they are recorded.
+  if (!reading_.units.empty())
+    for (const SceneSensor& sensor : scene_->sensors)
+      if (sensor.scale != 1) reading_.channel_scale.push_back(sensor.channel + "=1");
   FirstReading first;
   LogInfo log;
   try {

@@ -194,6 +194,13 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   const auto add = [&](const std::string& sentence) {
     if (!sentence.empty()) out.push_back(sentence);
   };
+  for (const Finding& one : worst_first(r.warnings.list())) {
+    if (one.severity != Severity::bad) break;
+    out.insert(out.begin(),
+               fmt::format("Mend the samples first ({}): these figures are of them as they are.",
+                           find_finding_kind(one.code)->title));
+    break;
+  }
   SensorSentence single = sensor_sentence(r);
   if (single.against_fusion)
     out.insert(out.begin(), std::move(single.text));

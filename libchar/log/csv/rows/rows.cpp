@@ -565,7 +565,9 @@ class CarefulLines {
           to_.dialect.has_header ? ", this one too" : "");
     if (fields == 2 * count && to_.dialect.delimiter == ',')
       return "are these decimal commas? write the file with another delimiter, such as ;";
-    return fmt::format("`delimiter`, if '{}' does not separate the fields", to_.dialect.delimiter);
+    return fmt::format(
+        "`drop_bad_rows` leaves such rows out; `delimiter`, if '{}' does not separate the fields",
+        to_.dialect.delimiter);
   }
 
   std::string few_hint(std::string_view line) const {
@@ -702,7 +704,7 @@ class CarefulLines {
     const auto column =
         std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
     return fmt::format(
-        "`channels` '!{}' leaves the column out, `drop_bad_rows` the row; `skip_rows`, if the "
+        "`drop_bad_rows` leaves such rows out, `channels` '!{}' the column; `skip_rows`, if the "
         "table "
         "starts later",
         to_.dialect.columns[static_cast<std::size_t>(column - to_.plan.target.begin())].name);

@@ -130,11 +130,13 @@ void warn_of_noise(const std::vector<std::string>& names,
       changes.emplace_back(i, change / 2);
   }
   const auto times = [](double log_ratio) { return brief_text(std::exp(log_ratio), 2); };
-  if (compared > 1 && changes.size() == compared && high - low < std::log(kWorthSaying))
-    return warnings.add("noise_changed_of_all",
-                        "all sensors scatter from sample to sample as they did not where this was "
-                        "learnt: weights of there fit, standard deviations do not",
-                        fmt::format("{} times", times(0.5 * (low + high))));
+  if (compared > 1 && changes.size() == compared && high - low < std::log(kWorthSaying)) {
+    warnings.add("noise_changed_of_all",
+                 "all sensors scatter from sample to sample as they did not where this was "
+                 "learnt: weights of there fit, standard deviations do not",
+                 fmt::format("{} times", times(0.5 * (low + high))));
+    return;
+  }
   for (const auto& [i, change] : changes)
     warnings.add(
         "noise_changed",
