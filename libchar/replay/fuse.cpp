@@ -158,9 +158,11 @@ class Fusing {
   Eigen::MatrixXd full_, x_, variance_;
   std::vector<std::vector<double>> out_;
   // Faults: what the log of the algorithm says of the sensors, up to where it was read.
-  std::size_t events_read_ = 0;
-  std::vector<char> out_now_;  // of each row
-  std::int64_t done_ = 0;
+  struct FaultsRead {
+    std::size_t events = 0;
+    std::vector<char> out_now;  // of each row
+    std::int64_t done = 0;
+  } faults_;
   // Is the noise that of where it was learnt?
   std::vector<Eigen::Index> checked_;  // rows of the algorithm whose sensors are in the log
   std::optional<StepNoiseMeter> steps_;
@@ -405,7 +407,7 @@ void Fusing::make_runner() {
     row_.push_back(learnt_.sensors[i].left_out ? -1 : std::ssize(sensor_of_));
     if (!learnt_.sensors[i].left_out) sensor_of_.push_back(i);
   }
-  out_now_.assign(sensor_of_.size(), 0);
+  faults_.out_now.assign(sensor_of_.size(), 0);
   try {
     fusion::Settings settings(entry_->options);
     for (const auto& [name, value] : algorithm_.options) settings.set(name, value);
@@ -474,19 +476,19 @@ const Eigen::MatrixXd& Fusing::given(const Eigen::MatrixXd& samples) {
 void Fusing::fill_flags(const Eigen::MatrixXd& samples, std::size_t first) {
   const fusion::FaultLog* const log = runner_->faults();
   for (Eigen::Index k = 0; k < samples.cols(); ++k) {
-    if (log != nullptr) note_faults(done_ + k + 1);
+    if (log != nullptr) note_faults(faults_.done + k + 1);
     for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) {
       const std::ptrdiff_t row = row_[i];
       FusedSensor& sensor = result_.sensors[i];
       double flag = kMissing;
       if (row < 0 || !fusion::usable(samples(row, k))) {
         ++sensor.missing;
-      } else if (out_now_[static_cast<std::size_t>(row)] != 0) {
+      } else if (faults_.out_now[static_cast<std::size_t>(row)] != 0) {
         flag = 0;
       } else {
         flag = 1;
       }
-      if (row >= 0 && out_now_[static_cast<std::size_t>(row)] != 0) ++sensor.out;
+      if (row >= 0 && faults_.out_now[static_cast<std::size_t>(row)] != 0) ++sensor.out;
       out_[first + i][static_cast<std::size_t>(k)] = flag;
     }
   }
@@ -495,9 +497,9 @@ void Fusing::fill_flags(const Eigen::MatrixXd& samples, std::size_t first) {
 /// Events of the instants before `end`. What scatters only stays in use, with less weight.
 void Fusing::note_faults(std::int64_t end) {
   const auto events = runner_->faults()->events();
-  for (; events_read_ < events.size() && events[events_read_].sample < end; ++events_read_) {
-    const fusion::FaultEvent& event = events[events_read_];
-    out_now_[static_cast<std::size_t>(event.channel)] =
+  for (; faults_.events < events.size() && events[faults_.events].sample < end; ++faults_.events) {
+    const fusion::FaultEvent& event = events[faults_.events];
+    faults_.out_now[static_cast<std::size_t>(event.channel)] =
         event.faulty && event.rule != fusion::FaultRule::noise ? 1 : 0;
   }
 }
@@ -527,7 +529,7 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   fill_flags(all, 2 * r);
   if (steps_ && checked_.size() == sensor_of_.size()) steps_->push(all);
   if (steps_ && checked_.size() < sensor_of_.size()) steps_->push(all(checked_, Eigen::all));
-  done_ += all.cols();
+  faults_.done += all.cols();
   const std::vector<std::span<const double>> columns(out_.begin(), out_.end());
   sink.block(columns);
 }

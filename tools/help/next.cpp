@@ -33,8 +33,8 @@ Settings settings_of(const std::vector<Finding>& findings, Severity severity) {
   return out;
 }
 
-/// " --missing=-99,-999": what mends the worst findings, by options that the verb has. Marks and wraps move a sensor that
-/// does not move: whether it does is seen without them.
+/// " --missing=-99,-999": what mends the worst findings, by options that the verb has. Marks and wraps
+/// move a sensor that does not move: whether it does is seen without them.
 std::string mending_flags(const std::set<std::string>* of_verb,
                           const std::vector<Finding>& findings) {
   Settings settings = settings_of(findings, Severity::bad);
