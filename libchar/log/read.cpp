@@ -171,7 +171,7 @@ using ScaleNotes =
 // these are not of one quantity.
 double conversion(const std::string& stated, const Channel& channel) {
   const auto from = find_unit(stated), to = find_unit(channel.unit);
-  if (!from || !to) return 1;
+  if (!from || !to || channel.unit == "1") return 1;
   if (from->quantity != to->quantity)
     throw Error({ErrorKind::usage,
                  "E0331",

@@ -110,6 +110,19 @@ TEST_CASE("a clock too coarse to tell rows apart keeps all rows") {
   CHECK(s.info.time.rate_hz == Approx(400).epsilon(1e-6));
 }
 
+TEST_CASE("of two rows that changed places the second is dropped, and its place stays empty") {
+  auto t = even(8000, 10000);
+  std::swap(t[3000], t[3001]);
+  std::swap(t[5000], t[5001]);
+  const Recording r = read_text(log_of(t));
+  CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-9));
+  CHECK(r.info.time.missing_samples == 2);
+  CHECK(r.info.samples == 8000);
+  CHECK(r.samples[0][3001] == 3000);
+  CHECK(std::isnan(r.samples[0][3000]));
+  CHECK(count(r, "jitter") == 0);
+}
+
 TEST_CASE("rows that step back are dropped and counted, a restarted clock is an error") {
   auto t = even(300, 1000);
   std::swap(t[100], t[101]);

@@ -299,6 +299,9 @@ std::int64_t TimeGrid::lag(const Pending& front,
     return (static_cast<double>(t - last_.stamp) + last_late) / step_.ns -
            static_cast<double>(j + 1);
   };
+  // Of two rows that changed places the second is dropped: its place is empty.
+  const bool close = static_cast<double>(stamp - last_.stamp) < 3 * step_.ns;
+  std::size_t dropped = 0;
   std::vector<double> lags{late(stamp, 0)};
   std::size_t item = 0, i = row;
   const Pending* at = &front;
@@ -313,7 +316,11 @@ std::int64_t TimeGrid::lag(const Pending& front,
     if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) ||
         __builtin_sub_overflow(t, last_.stamp, &unused) || t <= last_.stamp)
       continue;
-    lags.push_back(late(t, j));
+    if (close && j == 1 && t < stamp) {
+      ++dropped;
+      continue;
+    }
+    lags.push_back(late(t, j - dropped));
   }
   return common_lag(std::move(lags));
 }

@@ -49,8 +49,8 @@ fusion::ChannelLimits limits_of_row(const LearntAlignment& alignment, std::size_
   return out;
 }
 
-// From the numbers and the unit that the log has to those that are fused, whatever the reader made of them. The further axes of a
-// device are as the reader made them, and so is its own.
+// From the numbers and the unit that the log has to those that are fused, whatever the reader made of
+// them. The further axes of a device are as the reader made them, and so is its own.
 void set_units(const SourceInfo& source,
                const Scene& scene,
                const std::string& read_in,
