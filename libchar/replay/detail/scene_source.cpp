@@ -27,9 +27,14 @@ constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
 }
 
 // What makes the numbers of a sensor worthless: marks for missing values, a dead band, a wrapping phase.
-void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, Findings& to) {
+// Of sensors that are compared (presence.hpp) one that hangs is left out anyway.
+void note_bad_samples(const ChannelQuality& quality,
+                      const std::string& sensor,
+                      bool compared,
+                      Findings& to) {
   for (const Finding& one : quality.findings)
-    if (one.severity == Severity::bad && one.code != "no_value")
+    if (one.severity == Severity::bad && one.code != "no_value" &&
+        (one.code != "stuck" || !compared))
       to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one)).help =
           one.help;
 }
@@ -239,7 +244,10 @@ void SceneSource::scan(Progress& progress) {
       const bool seen = column < first.channels.size();
       info_.presence.push_back(seen ? first.channels[column] : Presence{});
       if (seen)
-        note_bad_samples(first.meters[column].finish(), scene_->sensors[k].name, info_.samples_say);
+        note_bad_samples(first.meters[column].finish(),
+                         scene_->sensors[k].name,
+                         scene_->sensors.size() >= 3,
+                         info_.samples_say);
     }
     (k < scene_->sensors.size() ? info_.units : info_.reference_units)
         .push_back(log.channels[column].unit);
