@@ -167,34 +167,26 @@ std::optional<std::string> value_for(const std::vector<std::string>& words,
 using ScaleNotes =
     std::map<std::string, std::vector<std::string>>;  // what was done, to which channels
 
-// What makes values in the unit that a log states values in the one that is asked for; 1 where
-// these are not of one quantity.
+// What makes values in the unit that a log states values in the one that is asked for; 1 where one of
+// them is not known.
 double conversion(const std::string& stated, const Channel& channel) {
   const auto from = find_unit(stated), to = find_unit(channel.unit);
   if (!from || !to || channel.unit == "1") return 1;
-  if (from->quantity != to->quantity)
-    throw Error({ErrorKind::usage,
-                 "E0331",
-                 "",
-                 fmt::format("{} is in {} in the log, which is no {}",
-                             printable(channel.name),
-                             printable(stated, 20),
-                             printable(channel.unit, 20)),
-                 "",
-                 fmt::format("`channel_scale` {}=1, if the log is wrong", channel.name)});
-  if (from->to_si == to->to_si) return 1;
-  if (from->quantity == Quantity::temperature || from->quantity == Quantity::concentration)
-    throw Error(
-        {ErrorKind::usage,
-         "E0331",
-         "",
-         fmt::format("values of {} in {} are not converted to {}",
-                     printable(channel.name),
-                     printable(stated, 20),
-                     printable(channel.unit, 20)),
-         "",
-         fmt::format("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name)});
-  return from->to_si / to->to_si;
+  const bool alike = from->quantity == to->quantity;
+  if (alike && from->to_si == to->to_si) return 1;
+  if (alike && from->quantity != Quantity::temperature && from->quantity != Quantity::concentration)
+    return from->to_si / to->to_si;
+  throw Error(
+      {ErrorKind::usage,
+       "E0331",
+       "",
+       fmt::format("values of {} in {} are not converted to {}{}",
+                   printable(channel.name),
+                   printable(stated, 20),
+                   printable(channel.unit, 20),
+                   alike ? "" : ", a unit of another quantity"),
+       "",
+       fmt::format("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name)});
 }
 
 // Names and units as they are asked for; counts become values, by `channel_scale`, else by a number

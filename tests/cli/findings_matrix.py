@@ -153,6 +153,16 @@ with tempfile.TemporaryDirectory() as folder:
         expect(low - wider <= truth <= high + wider,
                f"{kind}: N {white['value']} [{low}, {high}] after {remedy[1]}, true {truth}")
 
+    # What to type next is a command that runs: an option that was given is not given twice, marks stand together.
+    marked = here / "two.csv"
+    values = [-999 if i % 400 == 7 else 9999 if i % 500 == 3 else v for i, v in enumerate(noise(20000))]
+    marked.write_text("t[s],w[deg/s]\n" + "".join(f"{i / RATE:.2f},{v:.4f}\n" for i, v in enumerate(values)))
+    said = run("characterize", marked, "-o", here / "two").stdout.splitlines()[-1]
+    expect(said.startswith("next: sensorchar ") and said.count("--missing") == 1, f"next: {said}")
+    run(*shlex.split(said)[2:])
+    said = run("characterize", marked, "-o", here / "half", "--missing=9999").stdout
+    expect("--missing" not in said.splitlines()[-1], f"next: an option twice: {said.splitlines()[-1]}")
+
     # A slow channel beside a fast one has a rate of its own in every verb: what it gives is what it gives alone.
     slow = noise(1500, N)  # at 1 Hz: the white noise of all others
     table, alone = here / "slow.csv", here / "alone.csv"

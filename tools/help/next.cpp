@@ -33,10 +33,9 @@ Settings settings_of(const std::vector<Finding>& findings, Severity severity) {
   return out;
 }
 
-/// " --missing=-99,-999": what mends the worst findings, by options that the verb has. Marks and wraps
+/// " --missing=-99,-999": what mends the worst findings, by options of these (all where null). Marks and wraps
 /// move a sensor that does not move: whether it does is seen without them.
-std::string mending_flags(const std::set<std::string>* of_verb,
-                          const std::vector<Finding>& findings) {
+std::string mending_flags(const std::set<std::string>* free, const std::vector<Finding>& findings) {
   Settings settings = settings_of(findings, Severity::bad);
   if (settings.empty()) settings = settings_of(findings, Severity::caution);
   if (settings.size() > 1 || has(findings, "moves_throughout")) settings.erase("still");
@@ -45,7 +44,7 @@ std::string mending_flags(const std::set<std::string>* of_verb,
     const std::string words = with_flags("`" + option + "`");
     const std::string flag =
         words.substr(words.rfind(' ') + 1);  // "characterize --frozen" elsewhere
-    if (of_verb != nullptr && !of_verb->contains(flag)) continue;
+    if (free != nullptr && !free->contains(flag)) continue;
     if (option == "missing") {
       flags += fmt::format(" {}={}", flag, fmt::join(values, ","));
       continue;
@@ -60,6 +59,13 @@ std::vector<Finding> findings_of(const Characterization& result) {
   for (const ChannelResult& channel : result.channels)
     for (const Finding& one : judge(channel).findings) out.push_back(one);
   return out;
+}
+
+/// An option that was given already cannot be given twice.
+bool was_given(const Session& session, const std::string& flag) {
+  return std::any_of(session.command.begin(), session.command.end(), [&](const std::string& word) {
+    return word == flag || word.starts_with(flag + "=");
+  });
 }
 
 /// The command as it was given, its results replaced.
@@ -117,7 +123,10 @@ std::string mending_flags(const std::vector<Finding>& findings) {
 std::string mended_command(const Session& session,
                            const std::vector<Finding>& findings,
                            const std::string& folder) {
-  const std::string flags = mending_flags(&session.flags, findings);
+  std::set<std::string> free;
+  for (const std::string& flag : session.flags)
+    if (!was_given(session, flag)) free.insert(flag);
+  const std::string flags = mending_flags(&free, findings);
   return flags.empty() ? "" : command_again(session, flags, folder);
 }
 
