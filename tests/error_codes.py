@@ -10,6 +10,8 @@ import re
 import sys
 
 EXIT = {"usage": 2, "input": 3, "numeric": 4, "output": 5, "check": 6, "again": 75}
+OPENING = rf'(?:ErrorKind::|\b)({"|".join(EXIT)})(?:,|_error\()\s*'
+RAISED = re.compile(rf'{OPENING}"(E\d{{4}})"')
 ROW = re.compile(r"^\| (E\d{4}) \| ([\d, ]+) \| (.+?) \| ?(.*?) ?\|$")
 
 root = pathlib.Path(sys.argv[1])
@@ -22,7 +24,7 @@ for folder in ("libchar", "tools"):
         text = path.read_text()
         for code in re.findall(r'"(E\d{4})"', text):
             files[code].add(path.relative_to(root).as_posix())
-        for kind, code in re.findall(r'ErrorKind::(\w+),\s*"(E\d{4})"', text):
+        for kind, code in RAISED.findall(text):
             kinds[code].add(EXIT[kind])
 for path in sorted((root / "tools/python").rglob("*.py")):
     for kind, code in re.findall(r'raise (Usage|Input|Numeric)Error\(.*?"(E\d{4})"', path.read_text(), re.S):
@@ -50,7 +52,7 @@ for number, line in enumerate(lines, 1):
 for folder in ("libchar", "tools"):
     for path in sorted((root / folder).rglob("*.cpp")):
         text = path.read_text()
-        for bare in re.finditer(r'ErrorKind::\w+,\s*""', text):
+        for bare in re.finditer(rf'{OPENING}""', text):
             faults.append(f"{path.relative_to(root)}:{text[:bare.start()].count(chr(10)) + 1}: an error without a code")
 for code in sorted(set(files) - set(rows)):
     faults.append(f"{page}: {code} is not there; it is raised in {', '.join(sorted(files[code]))}")

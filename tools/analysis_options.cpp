@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "reading_options.hpp"
 
@@ -12,13 +12,6 @@ namespace sensorchar {
 namespace {
 
 using namespace libchar;
-
-[[noreturn]] void refuse(const std::string& option,
-                         const std::string& what,
-                         const std::string& got,
-                         const std::string& hint) {
-  throw Error({ErrorKind::usage, "E0201", option, what, got, hint});
-}
 
 std::vector<std::string> words(const std::string& list) {
   std::vector<std::string> out;
@@ -40,10 +33,10 @@ void read_taus(const std::string& text, AllanOptions& allan) {
     for (const std::string& word : words(text))
       allan.taus_s.push_back(parse_duration_s(word, true));
   } catch (const Error&) {
-    refuse("--taus",
-           "octave, decade, dense, all, ten or a list of times was expected",
-           text,
-           "for example --taus 0.1s,1s,10s");
+    throw usage_error("E0201", "--taus")
+        .says("octave, decade, dense, all, ten or a list of times was expected")
+        .got(text)
+        .hint("for example --taus 0.1s,1s,10s");
   }
 }
 
@@ -51,18 +44,18 @@ std::array<bool, kTerms> read_terms(const std::string& text) {
   std::array<bool, kTerms> wanted{};
   for (const std::string& word : words(text)) {
     if (word == "Q")
-      refuse("--terms",
-             "Q is quantization in IEEE 952 and stood for white noise in earlier versions",
-             word,
-             "write N for white noise, or quantization in full");
+      throw usage_error("E0201", "--terms")
+          .says("Q is quantization in IEEE 952 and stood for white noise in earlier versions")
+          .got(word)
+          .hint("write N for white noise, or quantization in full");
     bool known = false;
     for (std::size_t t = 0; t < kTerms; ++t)
       if (word == kTermNames[t].letter || word == kTermNames[t].key) known = wanted[t] = true;
     if (!known)
-      refuse("--terms",
-             "a list of N, B, K, R (or names such as white_noise, quantization) was expected",
-             word,
-             "for example --terms N,B,K,R");
+      throw usage_error("E0201", "--terms")
+          .says("a list of N, B, K, R (or names such as white_noise, quantization) was expected")
+          .got(word)
+          .hint("for example --terms N,B,K,R");
   }
   return wanted;
 }
@@ -217,21 +210,23 @@ void add_characterize_options(VerbOptions& verb, Session& session, AnalysisOptio
 CharacterizeOptions finish(const AnalysisOptions& a) {
   CharacterizeOptions o = a.options;
   if (a.nominal_frequency && o.data != SampleKind::frequency)
-    refuse("--nominal-frequency", "goes with --data frequency only", "", "");
+    throw usage_error("E0201", "--nominal-frequency").says("goes with --data frequency only");
   o.nominal_frequency = a.nominal_frequency.value_or(0);
   if (a.types.size() > 1 && !a.several_types)
-    refuse(
-        "--type", "one statistic was expected here", a.types[1], "sensorchar allan takes several");
+    throw usage_error("E0201", "--type")
+        .says("one statistic was expected here")
+        .got(a.types[1])
+        .hint("sensorchar allan takes several");
   o.allan.type = deviation_type(a.types[0]).value_or(DeviationType::oadev);
   o.more_types.clear();
   for (std::size_t i = 1; i < a.types.size(); ++i)
     o.more_types.push_back(*deviation_type(a.types[i]));
   for (const std::string& type : a.types)
     if (a.ten_asked && type != "oadev")
-      refuse("--taus",
-             "ten a decade goes with the overlapping Allan deviation only",
-             "ten with --type " + type,
-             "--taus decade or dense serve every type");
+      throw usage_error("E0201", "--taus")
+          .says("ten a decade goes with the overlapping Allan deviation only")
+          .got("ten with --type " + type)
+          .hint("--taus decade or dense serve every type");
   o.allan.tau_min_s = a.tau_min_s.value_or(0);
   o.allan.tau_max_s = a.tau_max_s.value_or(0);
   o.fit.remedies = !a.no_remedies;

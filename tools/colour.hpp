@@ -15,6 +15,4 @@ bool colours(int descriptor);
 
 template <>
 inline constexpr auto libchar::enum_table<sensorchar::Colour> =
-    libchar::enum_words<sensorchar::Colour>({{sensorchar::Colour::automatic, "auto"},
-                                             {sensorchar::Colour::always, "always"},
-                                             {sensorchar::Colour::never, "never"}});
+    libchar::enum_words<sensorchar::Colour, "auto always never">;

@@ -12,8 +12,8 @@
 
 #include "colour.hpp"
 #include "help/usage.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/version.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
@@ -83,22 +83,17 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
     verbs.push_back(verb->get_name());
   if (command.size() < 2)
-    throw Error({ErrorKind::usage,
-                 "E0203",
-                 app.get_name(),
-                 fmt::format("which verb? one of {}", fmt::join(verbs, ", ")),
-                 "",
-                 fmt::format("{} --help", app.get_name())});
+    throw libchar::usage_error("E0203", app.get_name())
+        .says("which verb? one of {}", fmt::join(verbs, ", "))
+        .hint("{} --help", app.get_name());
   if (command[1].starts_with('-')) {
     static const std::vector<std::string> kOwn = {"--help", "--version", "-h"};
     if (std::find(kOwn.begin(), kOwn.end(), command[1]) != kOwn.end()) return;
     const auto near = libchar::nearest(command[1], kOwn);
-    throw Error({ErrorKind::usage,
-                 "E0204",
-                 app.get_name(),
-                 "unknown option in front of the verb",
-                 command[1],
-                 libchar::did_you_mean(near, "options stand behind the verb")});
+    throw libchar::usage_error("E0204", app.get_name())
+        .says("unknown option in front of the verb")
+        .got(command[1])
+        .hint(libchar::did_you_mean(near, "options stand behind the verb"));
   }
   if (std::find(verbs.begin(), verbs.end(), command[1]) != verbs.end()) return;
   struct stat status {};
@@ -107,7 +102,10 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
     hint = libchar::did_you_mean(near);
   else if (::stat(command[1].c_str(), &status) == 0)
     hint = fmt::format("to see what is in this file: {} inspect FILE", app.get_name());
-  throw Error({ErrorKind::usage, "E0203", app.get_name(), "unknown verb", command[1], hint});
+  throw libchar::usage_error("E0203", app.get_name())
+      .says("unknown verb")
+      .got(command[1])
+      .hint(hint);
 }
 
 /// What a value's name says of it: "SCENE|LOG" is a file, "DIR" a folder, "SENSOR=FILE" neither.
@@ -164,12 +162,9 @@ void refuse_twice(const CLI::Option& option) {
   std::set<std::string> named;
   for (const std::string& value : option.results())
     if (!named.insert(value.substr(0, value.rfind('='))).second)
-      throw Error({ErrorKind::usage,
-                   "E0205",
-                   flag_of(option),
-                   "one is named twice, and only one of the two would count",
-                   value,
-                   ""});
+      throw libchar::usage_error("E0205", flag_of(option))
+          .says("one is named twice, and only one of the two would count")
+          .got(value);
 }
 
 bool says_how_to_print(const CLI::Option& option) {
@@ -180,12 +175,9 @@ bool says_how_to_print(const CLI::Option& option) {
 void refuse_beside(const CLI::App& verb, const CLI::Option& alone) {
   for (const CLI::Option* other : verb.get_options())
     if (other != &alone && other->count() > 0 && !says_how_to_print(*other))
-      throw Error({ErrorKind::usage,
-                   "E0209",
-                   flag_of(*other),
-                   "has an effect only without " + flag_of(alone),
-                   "",
-                   "leave one of the two out"});
+      throw libchar::usage_error("E0209", flag_of(*other))
+          .says("has an effect only without " + flag_of(alone))
+          .hint("leave one of the two out");
 }
 
 // An option that is accepted has an effect.
@@ -196,12 +188,9 @@ void refuse_without_effect(const CLI::App& verb, const OptionNotes& notes) {
     if (note->second.once_each) refuse_twice(*option);
     if (note->second.alone) refuse_beside(verb, *option);
     if (!note->second.works || note->second.works()) continue;
-    throw Error({ErrorKind::usage,
-                 "E0209",
-                 flag_of(*option),
-                 "has an effect only " + note->second.only,
-                 "",
-                 "leave it out"});
+    throw libchar::usage_error("E0209", flag_of(*option))
+        .says("has an effect only " + note->second.only)
+        .hint("leave it out");
   }
 }
 
@@ -216,27 +205,23 @@ void refuse_empty_words(const CLI::App& app, const std::vector<std::string>& com
     if (!word.empty() && !cut) continue;
     const bool of_option = !cut && i > 1 && before.starts_with('-') && before.size() > 1;
     if (const std::string& flag = cut ? word : before; flag == "-o" || flag.starts_with("--output"))
-      throw Error({ErrorKind::output, "E0502", "--output", "an output file needs a name", "", ""});
-    throw Error({ErrorKind::usage,
-                 "E0207",
-                 cut         ? word.substr(0, word.size() - 1)
-                 : of_option ? before
-                             : app.get_name(),
-                 "a value is expected, and this one is empty",
-                 "",
-                 "a variable of the shell that is not set? leave the option out for its default"});
+      throw libchar::output_error("E0502", "--output").says("an output file needs a name");
+    throw libchar::usage_error("E0207",
+                               cut         ? word.substr(0, word.size() - 1)
+                               : of_option ? before
+                                           : app.get_name())
+        .says("a value is expected, and this one is empty")
+        .hint("a variable of the shell that is not set? leave the option out for its default");
   }
 }
 
 void check_word(const std::string& text, const std::vector<std::string>& words) {
   if (std::find(words.begin(), words.end(), text) != words.end()) return;
   const auto near = libchar::nearest(text, words);
-  throw Error({ErrorKind::usage,
-               "E0202",
-               "",
-               fmt::format("expected one of {}", fmt::join(words, ", ")),
-               text,
-               libchar::did_you_mean(near)});
+  throw libchar::usage_error("E0202")
+      .says("expected one of {}", fmt::join(words, ", "))
+      .got(text)
+      .hint(libchar::did_you_mean(near));
 }
 
 }  // namespace
@@ -429,7 +414,7 @@ Option VerbOptions::add_choices(const std::string& names,
       const std::string word = text.substr(from, comma - from);
       check_word(word, words);
       if (std::find(values.begin(), values.end(), word) != values.end())
-        throw Error({ErrorKind::usage, "E0205", "", "a word stands twice in the list", word, ""});
+        throw libchar::usage_error("E0205").says("a word stands twice in the list").got(word);
       values.push_back(word);
       from = comma + 1;
     }
@@ -467,12 +452,10 @@ std::vector<std::string> with_joined_verb(const std::vector<std::string>& comman
   if (std::find(seconds.begin(), seconds.end(), second) == seconds.end()) {
     std::optional<std::string> near = libchar::nearest(second, seconds);
     if (near) near = command[at] + " " + *near;
-    throw Error({ErrorKind::usage,
-                 "E0203",
-                 "sensorchar " + command[at],
-                 fmt::format("which one? one of {}", fmt::join(seconds, ", ")),
-                 second,
-                 libchar::did_you_mean(near, "sensorchar help " + command[at])});
+    throw libchar::usage_error("E0203", "sensorchar " + command[at])
+        .says("which one? one of {}", fmt::join(seconds, ", "))
+        .got(second)
+        .hint(libchar::did_you_mean(near, "sensorchar help " + command[at]));
   }
   std::vector<std::string> joined = command;
   joined[at] = first + second;
@@ -508,8 +491,9 @@ void CommandLine::add(const VerbEntry& entry, Session& session) {
           [](const std::string& text) {
             const auto colour = libchar::find_enum<Colour>(text);
             if (!colour)
-              throw Error(
-                  {ErrorKind::usage, "E0202", "", "expected one of auto, always, never", text, ""});
+              throw libchar::usage_error("E0202")
+                  .says("expected one of auto, always, never")
+                  .got(text);
             use_colour(*colour);
           },
           "colour statuses and messages; auto: on a terminal, unless NO_COLOR is set (default: "
@@ -583,7 +567,7 @@ std::vector<ParsedWord> CommandLine::parsed(const std::vector<std::string>& argv
 std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv) {
   const auto refuse = [&](const char* code, const std::string& what) {
     const std::string name = full_name(*app_);
-    throw Error({ErrorKind::usage, code, name, what, "", name + " --help"});
+    throw libchar::usage_error(code, name).says(what).hint(name + " --help");
   };
   try {
     parse(argv);

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/formats.hpp"
 
 namespace sensorchar {
@@ -118,12 +118,9 @@ void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
           "CHAR",
           [&options](const std::string& text) {
             if (text != "auto" && text != "tab" && text != "space" && text.size() != 1)
-              throw libchar::Error({libchar::ErrorKind::usage,
-                                    "E0202",
-                                    "--delimiter",
-                                    "expected auto, tab, space or one character",
-                                    text,
-                                    ""});
+              throw libchar::usage_error("E0202", "--delimiter")
+                  .says("expected auto, tab, space or one character")
+                  .got(text);
             options.delimiter = text;
           },
           "between two cells: auto, tab, space, or one character (default: auto)")
@@ -158,12 +155,9 @@ void add_accepting_flag(VerbOptions& verb,
           word + "|error",
           [&value, name, word](const std::string& text) {
             if (text != word && text != "error")
-              throw libchar::Error({libchar::ErrorKind::usage,
-                                    "E0202",
-                                    name,
-                                    fmt::format("expected {} or error", word),
-                                    text,
-                                    ""});
+              throw libchar::usage_error("E0202", name)
+                  .says("expected {} or error", word)
+                  .got(text);
             value = text == word;
           },
           help)

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "help/fault_help.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/term_cells.hpp"
@@ -22,13 +22,6 @@ namespace sensorchar {
 namespace {
 
 using namespace libchar;
-
-[[noreturn]] void refuse_source(const std::string& where,
-                                const std::string& what,
-                                const std::string& got = "",
-                                const std::string& hint = "") {
-  throw Error({ErrorKind::usage, "E0910", where, what, got, hint});
-}
 
 TimeWindow window_from_words(const std::string& text, const std::string& option) {
   const Interval range = parse_range(text, RangeOf::duration_s, option);
@@ -53,10 +46,10 @@ SceneAlign align_from_words(const std::string& text, const Scene& scene) {
   if (terms != "all")
     for (const std::string& term : parts_of(terms, ',')) {
       if (std::find(std::begin(kAlignTerms), std::end(kAlignTerms), term) == std::end(kAlignTerms))
-        refuse_source("--align",
-                      "no term of an alignment",
-                      term,
-                      fmt::format("all, or some of {}", fmt::join(kAlignTerms, ", ")));
+        throw usage_error("E0910", "--align")
+            .says("no term of an alignment")
+            .got(term)
+            .hint("all, or some of {}", fmt::join(kAlignTerms, ", "));
       align.terms.push_back(term);
     }
   const std::string where = at == std::string::npos ? "" : text.substr(at + 1);
@@ -65,9 +58,14 @@ SceneAlign align_from_words(const std::string& text, const Scene& scene) {
     return align;
   }
   if (!where.empty() && where != "rest" && where != "learning" && where != "run")
-    refuse_source("--align", "expected rest, learning, run or FROM..TO behind the @", where);
+    throw usage_error("E0910", "--align")
+        .says("expected rest, learning, run or FROM..TO behind the @")
+        .got(where);
   if ((where == "rest" && !scene.rest) || (where == "learning" && !scene.learning))
-    refuse_source("--align", "there is no such window", where, "--" + where + " FROM..TO says one");
+    throw usage_error("E0910", "--align")
+        .says("there is no such window")
+        .got(where)
+        .hint("--" + where + " FROM..TO says one");
   align.learn = !where.empty() ? where : scene.learning ? "learning" : "run";
   return align;
 }
@@ -89,7 +87,8 @@ void set_preparation(const ReplaySource& source, Scene& scene) {
                        : source.high_pass_hz     ? "--high-pass"
                        : !source.detrend.empty() ? "--detrend"
                                                  : "--reference-offset";
-  if (const std::string why = why_not_prepared(scene); !why.empty()) refuse_source(option, why);
+  if (const std::string why = why_not_prepared(scene); !why.empty())
+    throw usage_error("E0910", option).says(why);
 }
 
 // A number, or estimate.
@@ -99,10 +98,12 @@ void set_of_reference(const std::string& words,
                       double& value,
                       bool& estimate) {
   if (words.empty()) return;
-  if (scene.simulate) refuse_source(option, "a simulation knows its truth", words);
+  if (scene.simulate)
+    throw usage_error("E0910", option).says("a simulation knows its truth").got(words);
   const auto number = parse_double(words);
   estimate = words == "estimate";
-  if (!number && !estimate) refuse_source(option, "expected a number, or estimate", words);
+  if (!number && !estimate)
+    throw usage_error("E0910", option).says("expected a number, or estimate").got(words);
   value = number.value_or(0);
 }
 
@@ -113,8 +114,9 @@ void set_reference(const ReplaySource& source, Scene& scene) {
     set_of_reference(
         source.reference_offset, "--reference-offset", scene, r.offset, r.estimate_offset);
   } else if (!source.reference_lag.empty() || !source.reference_offset.empty()) {
-    refuse_source(source.reference_lag.empty() ? "--reference-offset" : "--reference-lag",
-                  "there is no reference");
+    throw usage_error("E0910",
+                      source.reference_lag.empty() ? "--reference-offset" : "--reference-lag")
+        .says("there is no reference");
   }
 }
 
@@ -129,11 +131,10 @@ void refuse_words_of_recordings(const ReplaySource& source) {
                                                        : nullptr;
   if (option == nullptr && reading.empty()) return;
   const std::string flag = reading.empty() ? "" : reading.substr(1, reading.find(' ', 1) - 1);
-  refuse_source(option != nullptr ? option : flag,
-                fmt::format("describes a recording, and {} is a scene, which says this itself",
-                            printable(source.path)),
-                "",
-                "change the scene, or give its recording instead");
+  throw usage_error("E0910", option != nullptr ? option : flag)
+      .says("describes a recording, and {} is a scene, which says this itself",
+            printable(source.path))
+      .hint("change the scene, or give its recording instead");
 }
 
 Scene scene_of(const ReplaySource& source, const std::string& scene_file) {
@@ -153,7 +154,7 @@ Scene scene_of(const ReplaySource& source, const std::string& scene_file) {
   for (const std::string& words : source.models) {
     const std::size_t equals = words.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == words.size())
-      refuse_source("--model", "expected SENSOR=FILE", words);
+      throw usage_error("E0910", "--model").says("expected SENSOR=FILE").got(words);
     recording.models.emplace_back(words.substr(0, equals), words.substr(equals + 1));
   }
   return scene_from_recording(recording);
@@ -301,7 +302,9 @@ Scene read_replay_source(const ReplaySource& source, const std::string& scene_fi
   if (!source.rest.empty()) scene.rest = window_from_words(source.rest, "--rest");
   if (source.warm_up_s) scene.warm_up_s = source.warm_up_s;
   if (!source.align.empty()) {
-    if (scene.tilt) refuse_source("--align", "the sensors of a tilt measure different quantities");
+    if (scene.tilt)
+      throw usage_error("E0910", "--align")
+          .says("the sensors of a tilt measure different quantities");
     scene.align = align_from_words(source.align, scene);
   }
   set_reference(source, scene);

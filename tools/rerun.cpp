@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document/result_check.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/process/version.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/report/json/replay_json.hpp"
 #include "verb.hpp"
@@ -30,15 +30,8 @@ std::vector<std::string> ignored_keys() {
   return out;
 }
 
-[[noreturn]] void refuse_rerun(const std::string& document,
-                               const std::string& what,
-                               const std::string& got) {
-  throw Error({ErrorKind::usage,
-               "E0205",
-               document,
-               what,
-               got,
-               "look at its command, and run that by hand"});
+Refusal rerun_refusal(const std::string& document) {
+  return usage_error("E0205", document).hint("look at its command, and run that by hand");
 }
 
 /// Of a program of its own, so that nothing of this run changes.
@@ -76,13 +69,10 @@ void refuse_reading(const RerunOptions& options, const std::vector<ParsedWord>& 
     if (!is_below(here, file) && !is_below(beside, file)) outside.push_back(printable(word.file));
   }
   if (outside.empty() || options.allow_read) return;
-  throw Error({ErrorKind::usage,
-               "E0523",
-               options.document,
-               fmt::format("its command reads elsewhere than here and beside the document: {}",
-                           fmt::join(outside, ", ")),
-               "",
-               "--allow-read where you trust it"});
+  throw usage_error("E0523", options.document)
+      .says("its command reads elsewhere than here and beside the document: {}",
+            fmt::join(outside, ", "))
+      .hint("--allow-read where you trust it");
 }
 
 /// The command as its verb understands it, without anything that writes elsewhere than into the folder.
@@ -90,15 +80,15 @@ std::vector<std::string> words_of(const RerunOptions& options, const Json& comma
   const std::vector<std::string> words = words_in(command);
   if (words.size() < 2 ||
       std::find(std::begin(kVerbs), std::end(kVerbs), words[1]) == std::end(kVerbs))
-    refuse_rerun(options.document,
-                 "only what characterize and replay wrote is run again",
-                 words.size() < 2 ? "" : words[1]);
+    throw rerun_refusal(options.document)
+        .says("only what characterize and replay wrote is run again")
+        .got(words.size() < 2 ? "" : words[1]);
   const std::vector<ParsedWord> parsed = parsed_words(words);
   refuse_reading(options, parsed);
   std::vector<std::string> out = {words[0], words[1]}, places;
   for (const ParsedWord& word : parsed) {
     if (word.flag == "--write-scene")
-      refuse_rerun(options.document, "it writes a scene too", word.value);
+      throw rerun_refusal(options.document).says("it writes a scene too").got(word.value);
     if (word.writes || word.flag == "--json") continue;
     if (word.flag.empty())
       places.push_back(word.value);
@@ -117,7 +107,7 @@ class SilentOutput {
   SilentOutput() : kept_(::dup(STDOUT_FILENO)) {
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     if (kept_ < 0 || nowhere < 0 || ::dup2(nowhere, STDOUT_FILENO) < 0)
-      throw Error({ErrorKind::output, "E0510", "stdout", "cannot be put aside", "", ""});
+      throw output_error("E0510", "stdout").says("cannot be put aside");
     ::close(nowhere);
   }
   ~SilentOutput() {

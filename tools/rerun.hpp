@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/document/json_difference.hpp"
+#include "libchar/core/document/json.hpp"
 #include "session.hpp"
 
 namespace sensorchar {

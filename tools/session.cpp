@@ -14,11 +14,10 @@
 #include "heap_meter.hpp"
 #include "help/flag_names.hpp"
 #include "help/marked_line.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -62,12 +61,9 @@ void report_warnings(Session& session, const libchar::Findings& warnings, const 
 
 void refuse_strict(const Session& session) {
   if (!session.strict || session.warned_files.empty()) return;
-  throw Error({ErrorKind::input,
-               "E0206",
-               session.warned_files.front(),
-               "has warnings, and --strict was given",
-               "",
-               "leave out --strict to accept what the warnings say"});
+  throw libchar::input_error("E0206", session.warned_files.front())
+      .says("has warnings, and --strict was given")
+      .hint("leave out --strict to accept what the warnings say");
 }
 
 libchar::Json document_head(const Session& session,
@@ -111,12 +107,9 @@ void refuse_standard_output(const char* flag,
                             const char* what,
                             const char* hint) {
   if (place != "-") return;
-  throw libchar::Error({libchar::ErrorKind::usage,
-                        "E0205",
-                        flag,
-                        std::string("standard output takes one document, and ") + what,
-                        "",
-                        hint});
+  throw libchar::usage_error("E0205", flag)
+      .says(std::string("standard output takes one document, and ") + what)
+      .hint(hint);
 }
 
 void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force) {
@@ -137,13 +130,11 @@ void refuse_one_name(const std::vector<std::string>& paths) {
       const fs::path inner = place(a), outer = place(b);
       const auto apart = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
       if (apart.first != outer.end() || libchar::writes_through(b)) continue;
-      throw Error({ErrorKind::output,
-                   "E0505",
-                   a,
-                   inner == outer ? "two outputs are one file"
-                                  : "would lie in a folder that is another output",
-                   b,
-                   "give each a name of its own"});
+      throw libchar::output_error("E0505", a)
+          .says(inner == outer ? "two outputs are one file"
+                               : "would lie in a folder that is another output")
+          .got(b)
+          .hint("give each a name of its own");
     }
 }
 

@@ -14,8 +14,8 @@
 
 #include "colour.hpp"
 #include "help/flag_names.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/text/text.hpp"
@@ -118,12 +118,9 @@ void print(std::string_view text) {
   const int status = write_all(STDOUT_FILENO, text);
   if (status == EPIPE) throw StdoutClosed{};
   if (status != 0) {
-    throw libchar::Error({libchar::ErrorKind::output,
-                          "E0510",
-                          "stdout",
-                          fmt::format("cannot write the result: {}", std::strerror(status)),
-                          "",
-                          "free some space, or send the output elsewhere"});
+    throw libchar::output_error("E0510", "stdout")
+        .says("cannot write the result: {}", std::strerror(status))
+        .hint("free some space, or send the output elsewhere");
   }
 }
 
@@ -212,7 +209,7 @@ std::string Terminal::time_left(double fraction, std::string_view what, Clock::t
   const double seconds = std::chrono::duration<double>(now - phase_start_).count();
   const double done = fraction - phase_fraction_;
   if (seconds < 1 || done < 0.01 || fraction >= 1) return "";
-  return ", " + duration_text(seconds * (1 - fraction) / done, 2) + " left";
+  return ", " + libchar::duration_text(seconds * (1 - fraction) / done, 2) + " left";
 }
 
 void Terminal::clear() {

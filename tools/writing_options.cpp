@@ -1,6 +1,6 @@
 #include "writing_options.hpp"
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/formats.hpp"
 
 namespace sensorchar {
@@ -57,12 +57,9 @@ libchar::WriteOptions write_options(const WritingOptions& writing) {
 void take_standard_output(std::string& output, WritingOptions& writing, bool json) {
   if (output != "-") return;
   if (json)
-    throw libchar::Error({libchar::ErrorKind::usage,
-                          "E0205",
-                          "--json",
-                          "standard output takes one document, and with -o - the log goes there",
-                          "",
-                          "-o FILE"});
+    throw libchar::usage_error("E0205", "--json")
+        .says("standard output takes one document, and with -o - the log goes there")
+        .hint("-o FILE");
   if (writing.options.format == "auto") writing.options.format = "csv";
   output = "/dev/stdout";
 }

@@ -17,7 +17,7 @@
 
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/kernels/lag_sum.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -123,12 +123,10 @@ std::uint64_t stride_of(const AllanCurve& curve, const AllanPoint& point) {
 
 AllanCovariance::AllanCovariance(const AllanCurve& curve) : dt_s_(curve.dt_s) {
   if (!deviation_row(curve.type).is_allan())
-    throw Error({ErrorKind::usage,
-                 "E0202",
-                 "",
-                 "the covariance is known for Allan variances only",
-                 std::string(name_of(curve.type)),
-                 "use adev or oadev"});
+    throw usage_error("E0202")
+        .says("the covariance is known for Allan variances only")
+        .got(std::string(name_of(curve.type)))
+        .hint("use adev or oadev");
   size_ = curve.points.size();
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < size_; ++i) {

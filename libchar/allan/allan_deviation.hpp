@@ -19,11 +19,7 @@ enum class DataKind { rate, phase };
 enum class TauGrid { octave, decade, dense, list, all };
 
 template <>
-inline constexpr auto enum_table<TauGrid> = enum_words<TauGrid>({{TauGrid::octave, "octave"},
-                                                                 {TauGrid::decade, "decade"},
-                                                                 {TauGrid::dense, "dense"},
-                                                                 {TauGrid::list, "list"},
-                                                                 {TauGrid::all, "all"}});
+inline constexpr auto enum_table<TauGrid> = enum_words<TauGrid, "octave decade dense list all">;
 
 struct AllanPoint {
   std::uint64_t m = 0;  ///< averaging factor

@@ -293,11 +293,7 @@ void AllanPyramid::State::close() {
   }
 }
 
-void AllanPyramid::StateDeleter::operator()(State* state) const {
-  delete state;
-}
-
-AllanPyramid::AllanPyramid() : state_(new State) {}
+AllanPyramid::AllanPyramid() : state_(detail::hidden<State>()) {}
 AllanPyramid::AllanPyramid(const AllanSums& sums) : AllanPyramid() {
   state_->samples = sums.samples;
   state_->missing = sums.missing;
@@ -310,9 +306,6 @@ AllanPyramid::AllanPyramid(const AllanSums& sums) : AllanPyramid() {
     own.tally = level.terms;
   }
 }
-AllanPyramid::~AllanPyramid() = default;
-AllanPyramid::AllanPyramid(AllanPyramid&&) noexcept = default;
-AllanPyramid& AllanPyramid::operator=(AllanPyramid&&) noexcept = default;
 
 void AllanPyramid::push(std::span<const double> samples) {
   state_->push(samples.data(), samples.size());

@@ -2,11 +2,11 @@
 // The overlapping Allan deviation of a stream, at octaves, in constant memory.
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_sums.hpp"
+#include "libchar/core/hidden.hpp"
 
 namespace libchar {
 
@@ -21,9 +21,6 @@ class AllanPyramid {
   AllanPyramid();
   /// One that has seen a record elsewhere, part by part; no more samples come.
   explicit AllanPyramid(const AllanSums& sums);
-  ~AllanPyramid();
-  AllanPyramid(AllanPyramid&&) noexcept;
-  AllanPyramid& operator=(AllanPyramid&&) noexcept;
   void push(std::span<const double> samples);
   AllanCurve finish(double dt_s) const&;
   AllanCurve finish(double dt_s) &&;  ///< the same, where no more samples come
@@ -32,10 +29,7 @@ class AllanPyramid {
 
  private:
   struct State;
-  struct StateDeleter {
-    void operator()(State* state) const;
-  };
-  std::unique_ptr<State, StateDeleter> state_;
+  detail::Hidden<State> state_;
 };
 
 /// The curve of a whole record at once.

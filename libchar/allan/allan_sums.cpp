@@ -22,8 +22,8 @@
 #include "libchar/allan/detail/kernels/missing_samples.hpp"
 #include "libchar/allan/detail/kernels/octave_terms.hpp"
 #include "libchar/allan/detail/kernels/present_points.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/work.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -210,12 +210,9 @@ AllanCurve octave_curve(const AllanSums& sums, double dt_s) {
       add_point(std::uint64_t{1} << (l + k), levels[l].terms[k], missing, without, curve);
   note_missing(without, curve);
   if (curve.points.empty())
-    throw Error(
-        {ErrorKind::numeric,
-         "E0401",
-         "",
-         "an Allan deviation needs at least 2 consecutive samples; none of its terms fits the " +
-             std::to_string(curve.samples) + " of this record"});
+    throw numeric_error("E0401").says(
+        "an Allan deviation needs at least 2 consecutive samples; none of its terms fits the " +
+        std::to_string(curve.samples) + " of this record");
   for (const AllanPoint& point : curve.points) count_work(WorkKind::allan_terms, point.terms);
   return curve;
 }

@@ -27,7 +27,7 @@
 #include <cmath>
 
 #include "libchar/allan/detail/equivalent_dof.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -35,21 +35,18 @@ namespace {
 constexpr std::size_t kMostDevices = 64;
 constexpr double kResolved = 2;  // standard deviations
 
-[[noreturn]] void refuse_hat(const std::string& what, const std::string& hint) {
-  throw Error({ErrorKind::usage, "E0870", "", what, "", hint});
-}
-
 void check_records(std::span<const std::vector<double>> records) {
   if (records.size() < 3)
-    refuse_hat(
-        fmt::format("a cornered hat needs three devices or more; there are {}", records.size()),
-        "choose three channels with `channels`");
+    throw usage_error("E0870")
+        .says("a cornered hat needs three devices or more; there are {}", records.size())
+        .hint("choose three channels with `channels`");
   if (records.size() > kMostDevices)
-    refuse_hat(fmt::format("a cornered hat takes {} devices at most", kMostDevices),
-               "choose some with `channels`");
+    throw usage_error("E0870")
+        .says("a cornered hat takes {} devices at most", kMostDevices)
+        .hint("choose some with `channels`");
   for (const auto& record : records)
     if (record.size() != records[0].size())
-      refuse_hat("the records of a cornered hat must have one length", "");
+      throw usage_error("E0870").says("the records of a cornered hat must have one length");
 }
 
 std::vector<double> difference_of(const std::vector<double>& a, const std::vector<double>& b) {
@@ -157,9 +154,9 @@ CorneredHat cornered_hat(std::span<const std::vector<double>> records,
   check_records(records);
   if (options.type == DeviationType::mtie || options.type == DeviationType::theobr ||
       options.type == DeviationType::theoh)
-    refuse_hat(
-        fmt::format("{} of a difference is no sum of those of two devices", name_of(options.type)),
-        "oadev, mdev, ohdev and all other mean squares serve");
+    throw usage_error("E0870")
+        .says("{} of a difference is no sum of those of two devices", name_of(options.type))
+        .hint("oadev, mdev, ohdev and all other mean squares serve");
   const std::size_t n = records.size();
   std::vector<std::vector<AllanCurve>> curves(n);
   for (std::size_t i = 0; i < n; ++i)
@@ -237,15 +234,14 @@ CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> dif
                                         const AllanOptions& options) {
   check_records(differences);
   if (differences.size() != 3 || options.type != DeviationType::oadev)
-    refuse_hat(
+    throw usage_error("E0870").says(
         "differences of devices are taken three at a time, a - b, b - c and c - a, for the "
-        "overlapping Allan deviation",
-        "");
+        "overlapping Allan deviation");
   std::vector<std::vector<double>> x;
   for (const auto& record : differences) x.push_back(phase_of_log(record, options.data, dt_s));
   for (const auto& phase : x)  // a sum has no value behind a gap
     if (options.data == DataKind::rate && std::isnan(phase.back()))
-      refuse_hat("differences of rates are taken without missing samples", "");
+      throw usage_error("E0870").says("differences of rates are taken without missing samples");
   CorneredHat hat;
   hat.devices.resize(3);
   for (const AllanPoint& like : allan_deviation(differences[0], dt_s, options).points) {

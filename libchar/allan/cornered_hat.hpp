@@ -18,9 +18,7 @@ enum class HatStatus {
 
 template <>
 inline constexpr auto enum_table<HatStatus> =
-    enum_words<HatStatus>({{HatStatus::resolved, "resolved"},
-                           {HatStatus::not_resolved, "not_resolved"},
-                           {HatStatus::negative, "negative"}});
+    enum_words<HatStatus, "resolved not_resolved negative">;
 
 struct HatPoint {
   std::uint64_t m = 0;

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -16,18 +16,18 @@ namespace {
 constexpr std::uint64_t kShortestWindow = 8, kMostWindows = 1000000;
 
 void check_window(std::uint64_t samples, std::uint64_t window, std::uint64_t step) {
-  const auto refuse = [](const std::string& what, const std::string& got) {
-    throw Error({ErrorKind::usage, "E0871", "`dynamic`", what, got});
-  };
   if (window < kShortestWindow)
-    refuse(fmt::format("a window needs at least {} samples", kShortestWindow),
-           std::to_string(window));
+    throw usage_error("E0871", "`dynamic`")
+        .says("a window needs at least {} samples", kShortestWindow)
+        .got(std::to_string(window));
   if (window > samples)
-    refuse(fmt::format("the window is longer than the record of {} samples", samples),
-           std::to_string(window));
+    throw usage_error("E0871", "`dynamic`")
+        .says("the window is longer than the record of {} samples", samples)
+        .got(std::to_string(window));
   if ((samples - window) / step >= kMostWindows)
-    refuse(fmt::format("more than {} windows; a longer step makes fewer", kMostWindows),
-           std::to_string(step));
+    throw usage_error("E0871", "`dynamic`")
+        .says("more than {} windows; a longer step makes fewer", kMostWindows)
+        .got(std::to_string(step));
 }
 
 }  // namespace
@@ -58,12 +58,9 @@ DynamicDeviation dynamic_deviation(std::span<const double> record,
   });
   const auto lost = std::count(empty.begin(), empty.end(), 1);
   if (static_cast<std::size_t>(lost) == out.windows.size())
-    throw Error({ErrorKind::numeric,
-                 "E0401",
-                 "",
-                 "no window of the record gives a deviation: too few samples are there",
-                 "",
-                 "a longer window may"});
+    throw numeric_error("E0401")
+        .says("no window of the record gives a deviation: too few samples are there")
+        .hint("a longer window may");
   if (lost > 0)
     out.notes.push_back(
         fmt::format("{} of {} windows hold too few samples", lost, out.windows.size()));

@@ -2,7 +2,7 @@
 
 #include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/document/json_reader.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -193,12 +193,10 @@ BenchReport parse_bench_report(std::string_view text, const std::string& path) {
   const DocumentEntry* format =
       document.kind == Document::Kind::map ? document.find("format") : nullptr;
   if (format == nullptr || format->value.text != "bench")
-    throw Error({ErrorKind::input,
-                 "E0968",
-                 path,
-                 "no document of benchmarks",
-                 format == nullptr ? "" : format->value.text,
-                 "the bench.json of an earlier run"});
+    throw input_error("E0968", path)
+        .says("no document of benchmarks")
+        .got(format == nullptr ? "" : format->value.text)
+        .hint("the bench.json of an earlier run");
   BenchReport out;
   read_fields(bench_fields(), MapReader(document, path, ""), out);
   return out;

@@ -6,8 +6,8 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/core/error.hpp"
-#include "libchar/model/model_reader.hpp"
+#include "libchar/core/refusal.hpp"
+#include "libchar/model/model_file.hpp"
 #include "libchar/scene/scene_file.hpp"
 
 namespace libchar {
@@ -26,12 +26,9 @@ void add_model(const std::string& path, const BenchInputOptions& options, BenchI
   signal.name = signal.model.channel.empty() ? path : signal.model.channel;
   signal.rate_hz = options.reading.rate_hz.value_or(signal.model.rate_hz);
   if (!(signal.rate_hz > 0))
-    throw Error({ErrorKind::input,
-                 "E0964",
-                 path,
-                 "the model does not say its rate, and a record needs one",
-                 "",
-                 "give `rate_hz`"});
+    throw input_error("E0964", path)
+        .says("the model does not say its rate, and a record needs one")
+        .hint("give `rate_hz`");
   const double own = signal.model.duration_s * signal.rate_hz;
   signal.samples = own > 0 ? std::min(options.most_samples, static_cast<std::uint64_t>(own))
                            : options.most_samples;
@@ -58,12 +55,9 @@ void add_log(const std::string& path,
     signals.push_back(std::move(signal));
   }
   if (signals.empty())
-    throw Error({ErrorKind::input,
-                 "E0965",
-                 path,
-                 "no channel has noise that could be fitted and simulated",
-                 "",
-                 "its characterization says why"});
+    throw input_error("E0965", path)
+        .says("no channel has noise that could be fitted and simulated")
+        .hint("its characterization says why");
   std::stable_sort(signals.begin(), signals.end(), [](const auto& a, const auto& b) {
     return terms_in(a.model) > terms_in(b.model);
   });

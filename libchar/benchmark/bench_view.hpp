@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/benchmark/bench_report.hpp"
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/table/table.hpp"
 
 namespace libchar {

@@ -9,7 +9,7 @@
 #include "libchar/benchmark/detail/pareto.hpp"
 #include "libchar/benchmark/detail/records.hpp"
 #include "libchar/benchmark/turns.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/fit/curve/bounds.hpp"
 
@@ -48,12 +48,10 @@ std::vector<Estimator> chosen_estimators(const std::vector<std::string>& names) 
   for (const std::string& name : names) {
     const auto row = std::find(known.begin(), known.end(), name);
     if (row == known.end())
-      throw Error({ErrorKind::usage,
-                   "E0202",
-                   "",
-                   "no such way to get noise coefficients",
-                   name,
-                   did_you_mean(nearest(name, known), first_names(known))});
+      throw usage_error("E0202")
+          .says("no such way to get noise coefficients")
+          .got(name)
+          .hint(did_you_mean(nearest(name, known), first_names(known)));
     out.push_back(estimators()[static_cast<std::size_t>(row - known.begin())]);
   }
   return out;
@@ -186,12 +184,9 @@ CharacterizationBench bench_characterization(const BenchSignal& signal,
                                              HeapMeter* heap) {
   const Mixture truth = truth_of(signal.model);
   if (truth[0] + truth[1] + truth[2] == 0)
-    throw Error({ErrorKind::input,
-                 "E0962",
-                 signal.name,
-                 "no white noise, flicker or random walk to estimate",
-                 "",
-                 "a model needs one of noise.white_noise, bias_instability, random_walk"});
+    throw input_error("E0962", signal.name)
+        .says("no white noise, flicker or random walk to estimate")
+        .hint("a model needs one of noise.white_noise, bias_instability, random_walk");
   TermSet fitted{};
   for (std::size_t i = 0; i < kTerms; ++i) fitted[i] = truth[i] > 0;
   const auto bound = cramer_rao(truth, signal.rate_hz, static_cast<double>(signal.samples), fitted);

@@ -11,7 +11,7 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/benchmark/detail/estimators.hpp"
 #include "libchar/benchmark/detail/records.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fit/curve/bounds.hpp"
 
 namespace libchar {
@@ -21,19 +21,14 @@ void check_models(const std::vector<BenchSignal>& models, const DesignOptions& o
   if (!options.target) return;
   for (const BenchSignal& model : models) {
     if (model.model.unit != models[0].model.unit || model.rate_hz != models[0].rate_hz)
-      throw Error({ErrorKind::usage,
-                   "E0967",
-                   model.name,
-                   "one target for models of several units or rates",
-                   "",
-                   "give models of one unit and rate at a time; of a log, by `channels`"});
+      throw usage_error("E0967", model.name)
+          .says("one target for models of several units or rates")
+          .hint("give models of one unit and rate at a time; of a log, by `channels`");
     if (options.tau_s * model.rate_hz < 1)
-      throw Error({ErrorKind::usage,
-                   "E0967",
-                   model.name,
-                   "the averaging time is below the time between two samples",
-                   fmt::format("{} s", options.tau_s),
-                   "a longer one"});
+      throw usage_error("E0967", model.name)
+          .says("the averaging time is below the time between two samples")
+          .got("{} s", options.tau_s)
+          .hint("a longer one");
   }
 }
 

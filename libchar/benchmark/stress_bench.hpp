@@ -26,10 +26,7 @@ enum class StressOutcome {
 
 template <>
 inline constexpr auto enum_table<StressOutcome> =
-    enum_words<StressOutcome>({{StressOutcome::digits, "digits"},
-                               {StressOutcome::held, "held"},
-                               {StressOutcome::refused, "refused"},
-                               {StressOutcome::wrong, "wrong"}});
+    enum_words<StressOutcome, "digits held refused wrong">;
 
 /// One subject on one input.
 struct StressCell {

@@ -5,11 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <numeric>
-#include <sstream>
 #include <thread>
 
 namespace libchar {

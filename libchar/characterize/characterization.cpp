@@ -7,19 +7,177 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "libchar/characterize/detail/channel_stages.hpp"
 #include "libchar/characterize/detail/longest_segment.hpp"
-#include "libchar/characterize/detail/slow_channels.hpp"
-#include "libchar/characterize/detail/still.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
+#include "libchar/fit/record/mean_meter.hpp"
+#include "libchar/fit/signs/motion.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/gravity.hpp"
 
 namespace libchar {
 namespace {
+
+// The stretch of a log that is analysed where only rest is wanted: as the caller says, or the
+// longest in which no channel moves.
+
+constexpr std::uint64_t kFewestSamples = 64;  ///< of a series
+constexpr double kMostMissingAtRest = 0.01;   ///< share: filled gaps are stiller than any sensor
+
+/// What is left of a record between stretches in motion: the longest part.
+Interval longest_between(std::vector<Interval> moving, double end_s) {
+  std::sort(moving.begin(), moving.end(), [](const Interval& a, const Interval& b) {
+    return a.low < b.low;
+  });
+  Interval best;
+  double from = 0;
+  const auto offer = [&](double to) {
+    if (to - from > best.high - best.low) best = {from, to};
+  };
+  for (const Interval& stretch : moving) {
+    offer(stretch.low);
+    from = std::max(from, stretch.high);
+  }
+  offer(end_s);
+  return best;
+}
+
+/// Sees a whole log and says which stretch of it is still.
+class StillSearch final : public BlockSink {
+ public:
+  void begin(const LogInfo& so_far) override { means_.assign(so_far.channels.size(), {}); }
+  void block(const SampleBlock& samples) override {
+    for (std::size_t c = 0; c < means_.size(); ++c)
+      means_[c].push({samples.channels[c], samples.rows});
+  }
+  /// Throws Error(numeric) where the log moves throughout, or cannot be searched.
+  Stretch finish(const LogInfo& log) const {
+    if (!(log.time.rate_hz > 0))
+      throw numeric_error("E0705", log.file)
+          .says("the rate is not known: no still stretch can be searched")
+          .hint("give `rate_hz`");
+    std::vector<Interval> moving;
+    Stretch out;
+    std::size_t tested = 0;
+    for (std::size_t c = 0; c < means_.size(); ++c) {
+      const MeanMeter& means = means_[c];
+      const auto samples = static_cast<double>(means.samples());
+      if (means.samples() < kFewestSamples ||
+          static_cast<double>(means.missing()) > kMostMissingAtRest * samples)
+        continue;
+      const Motion motion = find_motion(means.series(log.time.rate_hz));
+      if (!motion.tested) continue;
+      ++tested;
+      if (motion.whole)
+        throw numeric_error("E0705", log.file)
+            .says("the channel {} moves throughout: the log has no still stretch",
+                  log.channels[c].name)
+            .hint("name the stretch with `still` FROM..TO, or choose other `channels`");
+      if (!motion.moving_s.empty()) out.moving.push_back(log.channels[c].name);
+      moving.insert(moving.end(), motion.moving_s.begin(), motion.moving_s.end());
+    }
+    if (tested == 0)
+      throw numeric_error("E0705", log.file)
+          .says(
+              "no channel can be searched for a still stretch: they are short (2048 samples are "
+              "needed), have many missing samples, or mostly repeat their values")
+          .hint("name the stretch with `still` FROM..TO");
+    const double end_s = static_cast<double>(log.samples) / log.time.rate_hz;
+    const Interval longest = longest_between(std::move(moving), end_s);
+    out.from_s = longest.low;
+    out.to_s = longest.high;
+    out.found = true;
+    out.whole = longest.low <= 0 && longest.high >= end_s;
+    return out;
+  }
+
+ private:
+  std::vector<MeanMeter> means_;
+};
+
+/// The stretch that `options` ask for is read: of a window in the options, Error(usage); ends that
+/// are none, Error(usage).
+void check_still(const StillOptions& still, const ReadOptions& reading) {
+  if (!still.search && !still.stretch_s) return;
+  if (reading.from_s || reading.to_s)
+    throw usage_error("E0704").says(
+        "`still` chooses the stretch: it does not go with `from_s` and `to_s`");
+  if (!still.stretch_s) return;
+  const Interval& s = *still.stretch_s;
+  if (!(s.low >= 0) || !(s.low < s.high))
+    throw usage_error("E0704")
+        .says("the still stretch does not go from a time to a later one")
+        .got("{} to {} s", brief_text(s.low, 6), brief_text(s.high, 6));
+}
+
+/// "Only the stretch from 38.6 to 186 s was analysed, the longest in which nothing moves."
+std::string stretch_sentence(const Stretch& stretch) {
+  if (stretch.whole) return "Nothing moves in the recording: all of it was analysed.";
+  std::string text = fmt::format("Only the stretch from {} to {} s was analysed, {}",
+                                 brief_text(stretch.from_s, 6),
+                                 brief_text(stretch.to_s, 6),
+                                 stretch.found ? "the longest in which nothing moves" : "as asked");
+  if (stretch.moving.empty()) return text + ".";
+  const std::size_t shown = std::min<std::size_t>(stretch.moving.size(), 6);
+  text += " (moving outside: ";
+  for (std::size_t i = 0; i < shown; ++i) text += (i == 0 ? "" : ", ") + stretch.moving[i];
+  return text + (shown < stretch.moving.size() ? ", …)." : ").");
+}
+
+// A channel that is slower than the rows of its table has a clock of its own: blanks between its samples are
+// no missing samples.
+
+/// Nothing that is said of the channel in the table's grid is about the sensor.
+void doubt(const Channel& channel, ChannelResult& result) {
+  Finding slow =
+      finding("slow_channel",
+              fmt::format("The channel has a value in one of {} rows: in the grid of the "
+                          "table most of its samples are missing, and its rate is wrong.",
+                          channel.every),
+              "in a table of faster rows it has no rate of its own");
+  slow.severity = Severity::bad;
+  slow.help.push_back({"Read it alone.", {{"channels", channel.name}}});
+  result.findings.push_back(std::move(slow));
+}
+
+/// Reads the slow channels of a log again, each alone on its own grid, and puts what they give in the place
+/// of what they gave in the grid of the table. Where the log cannot be read twice, or a temperature binds the
+/// channels together, a finding says so.
+void read_slow_channels_alone(const std::string& path,
+                              const CharacterizeOptions& options,
+                              Characterization& result,
+                              Progress& progress) {
+  std::vector<std::size_t> slow;
+  for (std::size_t c = 0; c < result.log.channels.size(); ++c)
+    if (result.log.channels[c].every > 1) slow.push_back(c);
+  if (slow.empty() || result.channels.size() != result.log.channels.size()) return;
+  if (read_once(path) || !options.temperature.empty() || result.channels.size() == 1) {
+    for (const std::size_t c : slow) doubt(result.log.channels[c], result.channels[c]);
+    return;
+  }
+  const std::vector<std::string> in_log = names_in_log(path, options.reading);
+  CharacterizeOptions alone = options;
+  result.log.warnings.remove("slow_channel");
+  for (const std::size_t c : slow) {
+    alone.reading = options_of_channels(options.reading, result.log.channels, in_log, {c});
+    alone.reading.hash = false;
+    Characterization own = characterize(path, alone, progress);
+    Channel& channel = result.log.channels[c];
+    channel.rate_hz = own.log.time.rate_hz;
+    result.channels[c] = std::move(own.channels.at(0));
+    result.channels[c].channel.rate_hz = channel.rate_hz;
+    result.log.warnings.add(
+        "own_grid",
+        "channels slower than the rows of their table, each analysed on a grid of its own",
+        fmt::format("channel {} at {} Hz", channel.name, brief_text(channel.rate_hz, 6)));
+  }
+}
 
 constexpr std::uint64_t kBlockOfMemory = std::uint64_t{1} << 16U;  // rows
 
@@ -67,12 +225,10 @@ ReadOptions with_temperature(const CharacterizeOptions& options) {
       std::find(channels.begin(), channels.end(), options.temperature) != channels.end())
     return reading;
   if (!reading.names.empty() || reading.units.size() > 1)
-    throw Error({ErrorKind::usage,
-                 "E0702",
-                 "",
-                 "with `names` or `units` for each channel, `channels` must hold the temperature",
-                 options.temperature,
-                 "add it to `channels`, and its name and unit"});
+    throw usage_error("E0702")
+        .says("with `names` or `units` for each channel, `channels` must hold the temperature")
+        .got(options.temperature)
+        .hint("add it to `channels`, and its name and unit");
   reading.channels.push_back(options.temperature);
   return reading;
 }
@@ -87,16 +243,13 @@ void drop_temperature(Characterization& result) {
 }
 
 void check_columns(const RecordingView& recording) {
-  const auto refuse = [](const std::string& what) {
-    throw Error({ErrorKind::usage, "E0706", "", what, "", ""});
-  };
   if (recording.info.channels.size() != recording.samples.size())
-    refuse(fmt::format("a recording has {} columns of samples for {} channels",
-                       recording.samples.size(),
-                       recording.info.channels.size()));
+    throw usage_error("E0706").says("a recording has {} columns of samples for {} channels",
+                                    recording.samples.size(),
+                                    recording.info.channels.size());
   for (const auto& column : recording.samples)
     if (column.size() != recording.samples[0].size())
-      refuse("the columns of a recording have different lengths");
+      throw usage_error("E0706").says("the columns of a recording have different lengths");
 }
 
 LogInfo push_recording(const RecordingView& recording, BlockSink& sink, Progress& progress) {
@@ -136,13 +289,9 @@ void check_reached(const Stretch& stretch, const LogInfo& log) {
   const double rate_hz = log.time.rate_hz;
   const double end_s = stretch.from_s + static_cast<double>(log.samples) / rate_hz;
   if (!(rate_hz > 0) || stretch.found || stretch.to_s <= end_s + 1.5 / rate_hz) return;
-  throw Error(
-      {ErrorKind::usage,
-       "E0704",
-       log.file,
-       "the still stretch ends after the log",
-       fmt::format("{} s, the log ends at {} s", brief_text(stretch.to_s, 6), brief_text(end_s, 6)),
-       ""});
+  throw usage_error("E0704", log.file)
+      .says("the still stretch ends after the log")
+      .got("{} s, the log ends at {} s", brief_text(stretch.to_s, 6), brief_text(end_s, 6));
 }
 
 bool wants_still(const StillOptions& still) {
@@ -163,9 +312,7 @@ void note_stretch(Stretch stretch, Characterization& result) {
 RecordingView between(const RecordingView& recording, const Stretch& stretch) {
   RecordingView part{recording.info, {}};
   const double rate_hz = recording.info.time.rate_hz;
-  if (!(rate_hz > 0))
-    throw Error(
-        {ErrorKind::usage, "E0704", "", "the rate is not known: there are no times", "", ""});
+  if (!(rate_hz > 0)) throw usage_error("E0704").says("the rate is not known: there are no times");
   for (const auto& column : recording.samples) {
     const auto at = [&](double time_s) {
       return static_cast<std::size_t>(
@@ -200,12 +347,9 @@ Characterization characterize(const std::string& path,
   ReadOptions chosen = with_temperature(options);
   std::optional<Stretch> stretch;
   if (options.still.search && read_once(path))
-    throw Error({ErrorKind::usage,
-                 "E0704",
-                 path,
-                 "a still stretch is searched in a first reading, and this can be read only once",
-                 "",
-                 "save it to a file, or name the stretch"});
+    throw usage_error("E0704", path)
+        .says("a still stretch is searched in a first reading, and this can be read only once")
+        .hint("save it to a file, or name the stretch");
   if (wants_still(options.still)) {
     stretch = still_stretch(options, [&](BlockSink& sink) {
       ReadOptions reading = chosen;

@@ -21,7 +21,7 @@
 #include "libchar/fit/signs/motion.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/log/recording_view.hpp"
+#include "libchar/log/recording.hpp"
 #include "libchar/spectrum/lines.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
@@ -36,10 +36,7 @@ enum class SampleKind {
 };
 
 template <>
-inline constexpr auto enum_table<SampleKind> = enum_words<SampleKind>({{SampleKind::rate, "rate"},
-                                                                       {SampleKind::phase, "phase"},
-                                                                       {SampleKind::frequency,
-                                                                        "frequency"}});
+inline constexpr auto enum_table<SampleKind> = enum_words<SampleKind, "rate phase frequency">;
 
 /// What is to be computed; nothing else is.
 struct Wanted {

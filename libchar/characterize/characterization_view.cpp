@@ -207,10 +207,6 @@ std::vector<std::optional<double>> data_sheet_curve(const ChannelResult& channel
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 void choose_details(std::vector<ChannelView>& channels) {
   if (channels.size() <= kMostInDetail) return;
   std::vector<ChannelView*> worst_first;

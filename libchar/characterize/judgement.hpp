@@ -18,9 +18,7 @@ enum class Rating {
   bad,      ///< there are none, or they are not to be relied on
 };
 template <>
-inline constexpr auto enum_table<Rating> = enum_words<Rating>({{Rating::good, "good"},
-                                                               {Rating::caution, "caution"},
-                                                               {Rating::bad, "bad"}});
+inline constexpr auto enum_table<Rating> = enum_words<Rating, "good caution bad">;
 
 /// "good", "caution", "do not use".
 std::string_view rating_word(Rating rating);

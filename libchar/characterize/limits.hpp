@@ -19,10 +19,7 @@ enum class LimitStatus {
   not_decided,  ///< the interval straddles it, or the coefficient cannot be relied on
 };
 template <>
-inline constexpr auto enum_table<LimitStatus> =
-    enum_words<LimitStatus>({{LimitStatus::pass, "pass"},
-                             {LimitStatus::fail, "fail"},
-                             {LimitStatus::not_decided, "not_decided"}});
+inline constexpr auto enum_table<LimitStatus> = enum_words<LimitStatus, "pass fail not_decided">;
 
 struct LimitJudgement {
   std::string channel, unit;  ///< unit of the channel

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -35,13 +35,11 @@ Prepared prepared(const std::string& path, const LogAllanOptions& options, Progr
 void check_units(const std::vector<Channel>& channels) {
   for (const Channel& channel : channels)
     if (channel.unit != channels[0].unit)
-      throw Error({ErrorKind::usage,
-                   "E0870",
-                   "",
-                   "the devices of a cornered hat must be in one unit; " + channels[0].name +
-                       " is in " + channels[0].unit,
-                   channel.name + " in " + channel.unit,
-                   "choose the `channels` that measure the same"});
+      throw usage_error("E0870")
+          .says("the devices of a cornered hat must be in one unit; " + channels[0].name +
+                " is in " + channels[0].unit)
+          .got(channel.name + " in " + channel.unit)
+          .hint("choose the `channels` that measure the same");
 }
 
 /// "a - b", "b - c", "c - a" name three devices; other names are of differences.

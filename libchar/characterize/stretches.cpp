@@ -7,22 +7,112 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "libchar/characterize/detail/channel_finish.hpp"
-#include "libchar/characterize/detail/stretch_order.hpp"
 #include "libchar/characterize/detail/stretch_state.hpp"
 #include "libchar/characterize/settings.hpp"
-#include "libchar/core/document/json.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/process/free_memory.hpp"
 #include "libchar/core/process/version.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/channel_names.hpp"
 
 namespace libchar {
 namespace {
+
+// States of stretches as they arrive: are they of one log, and do they cover it?
+
+struct OrderedState {
+  const NamedState* state;
+  StretchHead head;
+};
+
+void check_log(const OrderedState& one, const OrderedState& first, const std::string& settings) {
+  const StretchHead &head = one.head, &other = first.head;
+  if (head.identity != other.identity || head.samples != other.samples ||
+      head.channels != other.channels)
+    throw input_error("E0724", one.state->name)
+        .says("is of another log than {}: {} of {} samples of {} channels, not {} of {} of {}",
+              first.state->name,
+              head.identity,
+              head.samples,
+              head.channels,
+              other.identity,
+              other.samples,
+              other.channels)
+        .hint("join states of one log");
+  if (head.settings != settings)
+    throw input_error("E0724", one.state->name)
+        .says("was made with other settings, or by another version of the program")
+        .hint("give the settings of all stretches, and make them with one version");
+}
+
+/// " of channel 2" where there are several.
+std::string of_channel(const StretchHead& head) {
+  return head.channels > 1 ? fmt::format(" of channel {}", head.channel + 1) : "";
+}
+
+[[noreturn]] void refuse_hole(const OrderedState& at,
+                              std::uint64_t first,
+                              std::uint64_t last,
+                              const char* where) {
+  throw input_error("E0725", at.state->name)
+      .says("no state has the leaves {} to {}{} {} it", first, last, of_channel(at.head), where)
+      .hint("characterize that stretch, and give its state");
+}
+
+/// The states of a channel, in order: do they cover the log?
+void check_cover(const std::vector<OrderedState>& states) {
+  std::uint64_t next = 0;
+  const OrderedState* before = &states.front();
+  for (const OrderedState& one : states) {
+    const auto [from, end] = one.head.range;
+    if (from < next)
+      throw input_error("E0725", one.state->name)
+          .says("covers leaf {}{}, which {} does too",
+                from,
+                of_channel(one.head),
+                before->state->name)
+          .hint("leave one of them out");
+    if (from > next) refuse_hole(one, next, from - 1, "in front of");
+    next = end;
+    before = &one;
+  }
+  const std::uint64_t leaves = leaves_of(before->head.samples);
+  if (next < leaves) refuse_hole(*before, next, leaves - 1, "behind");
+}
+
+/// Of each channel, in the order of their leaves. Throws Error(input) by name unless they are of one log and of these settings (E0724)
+/// and cover it, no leaf of a channel twice (E0725).
+std::vector<std::vector<OrderedState>> states_in_order(std::span<const NamedState> states,
+                                                       const std::string& settings) {
+  std::vector<OrderedState> all;
+  for (const NamedState& state : states) all.push_back({&state, stretch_head(state)});
+  if (all.empty()) throw input_error("E0725").says("there is no state to be joined");
+  std::stable_sort(all.begin(), all.end(), [](const OrderedState& a, const OrderedState& b) {
+    return std::pair(a.head.channel, a.head.range.first_leaf) <
+           std::pair(b.head.channel, b.head.range.first_leaf);
+  });
+  std::vector<std::vector<OrderedState>> channels;
+  for (OrderedState& one : all) {
+    check_log(one, all.front(), settings);
+    channels.resize(all.front().head.channels);
+    channels[one.head.channel].push_back(one);
+  }
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].empty())
+      throw input_error("E0725", all.front().state->name)
+          .says("no state is of channel {} of {}", c + 1, channels.size())
+          .hint("give the states of all channels");
+    check_cover(channels[c]);
+  }
+  return channels;
+}
 
 /// Channels that are taken in one pass over the rows of a stretch: more of them take 15 to 30 MB
 /// each, fewer take more passes.
@@ -54,14 +144,11 @@ struct LeafSamples final : BlockSink {
 
 void check_range(const std::string& path, StretchRange range, std::uint64_t leaves) {
   if (range.first_leaf < range.end_leaf && range.end_leaf <= leaves) return;
-  throw Error({ErrorKind::usage,
-               "E0727",
-               path,
-               fmt::format("the log has {} leaves of {} samples; a stretch is of some of them",
-                           leaves,
-                           kLeafSamples),
-               fmt::format("{}..{}", range.first_leaf, range.end_leaf),
-               fmt::format("choose from 0..{}", leaves)});
+  throw usage_error("E0727", path)
+      .says(
+          "the log has {} leaves of {} samples; a stretch is of some of them", leaves, kLeafSamples)
+      .got("{}..{}", range.first_leaf, range.end_leaf)
+      .hint("choose from 0..{}", leaves);
 }
 
 /// What is the same whichever leaf a head was read with.
@@ -226,8 +313,7 @@ void characterize_stretch(const std::string& path,
   StretchState state;
   state.log = read_log_head(path, options.reading);
   if (const std::string why = why_not_divided(state.log, options); !why.empty())
-    throw Error(
-        {ErrorKind::usage, "E0726", path, "the log cannot be taken in stretches: " + why, "", ""});
+    throw usage_error("E0726", path).says("the log cannot be taken in stretches: " + why);
   const std::uint64_t samples = state.log.rows;
   check_range(path, range, leaves_of(samples));
   const std::size_t channels = state.log.channels.size();
@@ -290,8 +376,7 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
     give_back_free_memory();
   }
   if (with_values == 0)
-    throw Error(
-        {ErrorKind::input, "E0318", result.log.file, "no channel has a finite value", "", ""});
+    throw input_error("E0318", result.log.file).says("no channel has a finite value");
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -20,12 +20,7 @@ enum class Status {
 };
 template <>
 inline constexpr auto enum_table<Status> =
-    enum_words<Status>({{Status::detected, "detected"},
-                        {Status::not_detected, "not_detected"},
-                        {Status::undetermined, "undetermined"},
-                        {Status::misfit, "misfit"},
-                        {Status::given, "given"},
-                        {Status::not_fitted, "not_fitted"}});
+    enum_words<Status, "detected not_detected undetermined misfit given not_fitted">;
 
 /// The estimate of a square that no bound and no decision biases: below zero where chance has it so.
 struct SquareInAll {

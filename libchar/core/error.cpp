@@ -20,4 +20,9 @@ std::string one_line(const Problem& problem, bool colours) {
 
 Error::Error(Problem problem) : problem_(std::move(problem)), message_(one_line(problem_)) {}
 
+void Error::set(std::string Problem::*part, std::string text) {
+  problem_.*part = std::move(text);
+  message_ = one_line(problem_);
+}
+
 }  // namespace libchar

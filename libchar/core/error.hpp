@@ -38,6 +38,9 @@ class Error : public std::exception {
   const char* what() const noexcept override { return message_.c_str(); }
   const Problem& problem() const noexcept { return problem_; }
 
+ protected:
+  void set(std::string Problem::*part, std::string text);
+
  private:
   Problem problem_;
   std::string message_;

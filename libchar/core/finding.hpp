@@ -22,9 +22,7 @@ enum class Severity {
   bad,      ///< there are no numbers, or they are not to be relied on
 };
 template <>
-inline constexpr auto enum_table<Severity> = enum_words<Severity>({{Severity::note, "note"},
-                                                                   {Severity::caution, "caution"},
-                                                                   {Severity::bad, "bad"}});
+inline constexpr auto enum_table<Severity> = enum_words<Severity, "note caution bad">;
 
 /// What a finding changes.
 enum class Affected {
@@ -41,24 +39,12 @@ enum class Affected {
   verdict
 };
 template <>
-inline constexpr auto enum_table<Affected> = enum_words<Affected>({{Affected::values, "values"},
-                                                                   {Affected::time, "time"},
-                                                                   {Affected::rate, "rate"},
-                                                                   {Affected::scale, "scale"},
-                                                                   {Affected::mean, "mean"},
-                                                                   {Affected::noise, "noise"},
-                                                                   {Affected::white, "N"},
-                                                                   {Affected::flicker, "B"},
-                                                                   {Affected::walk, "K"},
-                                                                   {Affected::weights, "weights"},
-                                                                   {Affected::verdict, "verdict"}});
+inline constexpr auto enum_table<Affected> =
+    enum_words<Affected, "values time rate scale mean noise N B K weights verdict">;
 
 enum class Direction { unknown, too_small, too_large };
 template <>
-inline constexpr auto enum_table<Direction> =
-    enum_words<Direction>({{Direction::unknown, "unknown"},
-                           {Direction::too_small, "too-small"},
-                           {Direction::too_large, "too-large"}});
+inline constexpr auto enum_table<Direction> = enum_words<Direction, "unknown too-small too-large">;
 
 struct Finding {
   struct Effect {

@@ -25,17 +25,9 @@ enum class Quantity {
 };
 template <>
 inline constexpr auto enum_table<Quantity> =
-    enum_words<Quantity>({{Quantity::angular_rate, "angular_rate"},
-                          {Quantity::acceleration, "acceleration"},
-                          {Quantity::magnetic_field, "magnetic_field"},
-                          {Quantity::pressure, "pressure"},
-                          {Quantity::temperature, "temperature"},
-                          {Quantity::voltage, "voltage"},
-                          {Quantity::angle, "angle"},
-                          {Quantity::time, "time"},
-                          {Quantity::frequency, "frequency"},
-                          {Quantity::concentration, "concentration"},
-                          {Quantity::ratio, "ratio"}});
+    enum_words<Quantity,
+               "angular_rate acceleration magnetic_field pressure temperature voltage angle time "
+               "frequency concentration ratio">;
 
 struct Unit {
   std::string symbol;  ///< canonical spelling, e.g. "deg/s"
@@ -55,10 +47,11 @@ std::optional<double> unit_factor(std::string_view from, std::string_view to);
 /// What a unit alone leaves open: the sides of a density; or that it is not the term but the lowest Allan deviation of it.
 enum class Reading { plain, one_sided, two_sided, floor };
 template <>
-inline constexpr auto enum_table<Reading> = enum_words<Reading>({{Reading::plain, ""},
-                                                                 {Reading::one_sided, "one-sided"},
-                                                                 {Reading::two_sided, "two-sided"},
-                                                                 {Reading::floor, "floor"}});
+inline constexpr auto enum_table<Reading> =
+    std::to_array<EnumWord<Reading>>({{Reading::plain, ""},
+                                      {Reading::one_sided, "one-sided"},
+                                      {Reading::two_sided, "two-sided"},
+                                      {Reading::floor, "floor"}});
 
 /// One way in which the field says a noise term.
 struct HabitualValue {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
@@ -30,25 +30,21 @@ void check_needs(const ExportTarget& target, const SensorGroup& group) {
                                                                 : gyroscope && accelerometer;
   if (met) return;
   const bool both = target.needs == gyroscope_and_accelerometer;
-  throw Error(
-      {ErrorKind::input,
-       "E0590",
-       "",
-       fmt::format(
-           "{} needs models of a gyroscope {} an accelerometer, and there is no {} among {}",
-           target.title,
-           both ? "and" : "or",
-           both ? (gyroscope ? "accelerometer" : "gyroscope") : "one of them",
-           group.all.empty() ? "no models" : channels_of(group)),
-       "",
-       "give all files of the device; where name and unit do not say what a channel is: `axis` "
-       "NAME=gx"});
+  throw input_error("E0590")
+      .says("{} needs models of a gyroscope {} an accelerometer, and there is no {} among {}",
+            target.title,
+            both ? "and" : "or",
+            both ? (gyroscope ? "accelerometer" : "gyroscope") : "one of them",
+            group.all.empty() ? "no models" : channels_of(group))
+      .hint(
+          "give all files of the device; where name and unit do not say what a channel is: `axis` "
+          "NAME=gx");
 }
 
 void check_options(const ExportOptions& options) {
   const auto positive = [](const char* name, double value) {
     if (!(value > 0))
-      throw Error({ErrorKind::usage, "E0591", name, "expected a number > 0", shortest(value)});
+      throw usage_error("E0591", name).says("expected a number > 0").got(shortest(value));
   };
   positive("`inflate`", options.inflate);
   positive("`filter_step_s`", options.filter_step_s);
@@ -139,15 +135,11 @@ void answer_findings(const ExportTarget& target,
       const std::string what =
           fmt::format("{}: {}", printable(m->channel, 40), printable(one.sentence));
       if (one.severity == Severity::bad && !options.anyway)
-        throw Error({ErrorKind::input,
-                     "E0594",
-                     "",
-                     what,
-                     "",
-                     one.help.empty()
-                         ? "record again where the sensor is at rest, or export it with `anyway`"
-                         : as_part(one.help[0].sentence) + settings_text(one.help[0]) +
-                               ", or export it with `anyway`"});
+        throw input_error("E0594").says(what).hint(
+            one.help.empty()
+                ? "record again where the sensor is at rest, or export it with `anyway`"
+                : as_part(one.help[0].sentence) + settings_text(one.help[0]) +
+                      ", or export it with `anyway`");
       notes.push_back(what);
     }
 }
@@ -216,12 +208,10 @@ const ExportTarget& find_export_target(std::string_view name) {
   for (const ExportTarget& target : export_targets()) names.emplace_back(target.name);
   const auto near = nearest(name, names);
   const std::string hint = alike_hint(name);
-  throw Error({ErrorKind::usage,
-               "E0592",
-               "`target`",
-               fmt::format("no such target; targets are {}", fmt::join(names, ", ")),
-               std::string(name),
-               hint.empty() ? did_you_mean(near, "`export_targets` lists them") : hint});
+  throw usage_error("E0592", "`target`")
+      .says("no such target; targets are {}", fmt::join(names, ", "))
+      .got(std::string(name))
+      .hint(hint.empty() ? did_you_mean(near, "`export_targets` lists them") : hint);
 }
 
 Export export_models(const ExportTarget& target,

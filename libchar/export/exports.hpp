@@ -24,13 +24,7 @@ enum class AxisChoice {
 };
 
 template <>
-inline constexpr auto enum_table<AxisChoice> = enum_words<AxisChoice>({{AxisChoice::automatic,
-                                                                        "auto"},
-                                                                       {AxisChoice::max, "max"},
-                                                                       {AxisChoice::rms, "rms"},
-                                                                       {AxisChoice::x, "x"},
-                                                                       {AxisChoice::y, "y"},
-                                                                       {AxisChoice::z, "z"}});
+inline constexpr auto enum_table<AxisChoice> = enum_words<AxisChoice, "auto max rms x y z">;
 
 struct ExportOptions {
   AxisChoice axes = AxisChoice::automatic;

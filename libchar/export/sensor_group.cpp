@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
@@ -46,12 +46,10 @@ Place place_named(const std::string& name) {
   const std::vector<std::string> names = place_names();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw Error({ErrorKind::usage,
-                 "E0581",
-                 "`axis`",
-                 fmt::format("no such place; places are {}", fmt::join(names, ", ")),
-                 name,
-                 "g, a and m alone stand for all three axes"});
+    throw usage_error("E0581", "`axis`")
+        .says("no such place; places are {}", fmt::join(names, ", "))
+        .got(name)
+        .hint("g, a and m alone stand for all three axes");
   const auto index = static_cast<std::size_t>(found - names.begin());
   return {index / 4, (index % 4 + 3) % 4};
 }
@@ -68,12 +66,10 @@ void check_overrides(const std::vector<SensorModel>& models, const AxisOverrides
     place_named(place);
     if (std::find(channels.begin(), channels.end(), channel) != channels.end()) continue;
     const auto near = nearest(channel, channels);
-    throw Error({ErrorKind::usage,
-                 "E0582",
-                 "`axis`",
-                 "no model of this channel was given",
-                 channel,
-                 did_you_mean(near, fmt::format("channels are {}", fmt::join(channels, ", ")))});
+    throw usage_error("E0582", "`axis`")
+        .says("no model of this channel was given")
+        .got(channel)
+        .hint(did_you_mean(near, fmt::format("channels are {}", fmt::join(channels, ", "))));
   }
 }
 
@@ -89,16 +85,15 @@ std::optional<Place> place_of(const SensorModel& model, const AxisOverrides& ove
 double factor_to_si(const SensorModel& model, const Kind& kind) {
   const auto unit = find_unit(model.unit);
   if (unit && unit->quantity == kind.quantity) return unit->to_si;
-  throw Error(
-      {ErrorKind::input,
-       "E0583",
-       model.channel,
-       model.unit.empty()
-           ? fmt::format(
-                 "its model names no unit, a {} needs one of {}", kind.name, kind.quantity_name)
-           : fmt::format("its unit is none of {}, which a {} needs", kind.quantity_name, kind.name),
-       model.unit,
-       fmt::format("write unit: {} into the model file", kind.example)});
+  throw input_error("E0583", model.channel)
+      .says(model.unit.empty()
+                ? fmt::format("its model names no unit, a {} needs one of {}",
+                              kind.name,
+                              kind.quantity_name)
+                : fmt::format(
+                      "its unit is none of {}, which a {} needs", kind.quantity_name, kind.name))
+      .got(model.unit)
+      .hint("write unit: {} into the model file", kind.example);
 }
 
 [[noreturn]] void refuse_duplicate(const Kind& kind,
@@ -107,20 +102,17 @@ double factor_to_si(const SensorModel& model, const Kind& kind) {
                                    const SensorModel& second) {
   const std::string place = axis < 3 ? fmt::format("the {} axis of the {}", kAxes[axis], kind.name)
                                      : fmt::format("the {}", kind.name);
-  throw Error({ErrorKind::input,
-               "E0584",
-               second.channel,
-               fmt::format("two models claim {}: {} and {}",
-                           place,
-                           printable(first.channel, 40),
-                           printable(second.channel, 40)),
-               "",
-               first.channel == second.channel
-                   ? "leave one of the two files out"
-                   : fmt::format("leave one out, or say which it is: `axis` {}={}{}",
-                                 printable(second.channel, 40),
-                                 kind.letter,
-                                 axis < 3 ? kAxes[(axis + 1) % 3] : 'x')});
+  throw input_error("E0584", second.channel)
+      .says("two models claim {}: {} and {}",
+            place,
+            printable(first.channel, 40),
+            printable(second.channel, 40))
+      .hint(first.channel == second.channel
+                ? "leave one of the two files out"
+                : fmt::format("leave one out, or say which it is: `axis` {}={}{}",
+                              printable(second.channel, 40),
+                              kind.letter,
+                              axis < 3 ? kAxes[(axis + 1) % 3] : 'x'));
 }
 
 void put(std::optional<SensorTriad>& triad,
@@ -154,16 +146,11 @@ SensorGroup group_sensors(const std::vector<SensorModel>& models, const AxisOver
   for (std::size_t k = 0; k < kKinds.size(); ++k) {
     for (const auto& [axis, model] : members[k]) {
       if (axis == 3 && members[k].size() > 1)
-        throw Error(
-            {ErrorKind::input,
-             "E0585",
-             model->channel,
-             fmt::format(
-                 "is one of {} {} models and names no axis", members[k].size(), kKinds[k].name),
-             "",
-             fmt::format("say which axis it is: `axis` {}={}x",
-                         printable(model->channel, 40),
-                         kKinds[k].letter)});
+        throw input_error("E0585", model->channel)
+            .says("is one of {} {} models and names no axis", members[k].size(), kKinds[k].name)
+            .hint("say which axis it is: `axis` {}={}x",
+                  printable(model->channel, 40),
+                  kKinds[k].letter);
       put(*triads[k], kKinds[k], axis, {model, factor_to_si(*model, kKinds[k])});
     }
   }
@@ -186,12 +173,7 @@ void require_axes(const SensorTriad& triad, std::optional<std::size_t> only) {
     hint += fmt::format(", or let it stand for all three: `axis` {}={}",
                         printable(triad.axis[present[0]]->model->channel, 40),
                         triad.kind[0]);
-  throw Error({ErrorKind::input,
-               "E0586",
-               "",
-               fmt::format("the {} has no model for {}", triad.kind, missing),
-               "",
-               hint});
+  throw input_error("E0586").says("the {} has no model for {}", triad.kind, missing).hint(hint);
 }
 
 }  // namespace libchar

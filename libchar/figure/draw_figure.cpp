@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/crc32.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/figure/detail/cairo_pages.hpp"
 #include "libchar/figure/detail/sheet.hpp"
 
@@ -20,13 +20,9 @@ std::string draw_figure(const Chart& figure,
                         const DrawingOptions& options,
                         Findings& warnings) {
   if (format != FigureFormat::svg && !has_cairo())
-    throw Error(
-        {ErrorKind::usage,
-         "E0980",
-         "",
-         fmt::format("{} is drawn by Cairo, which this program was built without", name_of(format)),
-         "",
-         "ask for .svg, or build with Debian's package libcairo2-dev"});
+    throw usage_error("E0980")
+        .says("{} is drawn by Cairo, which this program was built without", name_of(format))
+        .hint("ask for .svg, or build with Debian's package libcairo2-dev");
   const Drawing drawing = lay_out(figure, options);
   if (format == FigureFormat::svg) return svg_of(drawing);
   if (format == FigureFormat::pdf) return pdf_of(drawing, warnings);

@@ -16,16 +16,11 @@ enum class LegendPlace {
   none,
 };
 template <>
-inline constexpr auto enum_table<LegendPlace> =
-    enum_words<LegendPlace>({{LegendPlace::automatic, "auto"},
-                             {LegendPlace::inside, "inside"},
-                             {LegendPlace::below, "below"},
-                             {LegendPlace::none, "none"}});
+inline constexpr auto enum_table<LegendPlace> = enum_words<LegendPlace, "auto inside below none">;
 
 enum class FigureFormat { svg, pdf, png };
 template <>
-inline constexpr auto enum_table<FigureFormat> = enum_words<FigureFormat>(
-    {{FigureFormat::svg, "svg"}, {FigureFormat::pdf, "pdf"}, {FigureFormat::png, "png"}});
+inline constexpr auto enum_table<FigureFormat> = enum_words<FigureFormat, "svg pdf png">;
 
 inline constexpr double kOneColumnMm = 85, kTwoColumnsMm = 178;
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/csv_cell.hpp"

@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "libchar/characterize/compare/reported_characterization.hpp"
-#include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json_reader.hpp"
-#include "libchar/core/error.hpp"
-#include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/figure/detail/sources/curve_sources.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
-#include "libchar/model/model_json.hpp"
+#include "libchar/model/model_file.hpp"
 #include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
@@ -40,27 +38,21 @@ std::string name_for(const std::string& path) {
 
 [[noreturn]] void refuse_document(const std::string& file, const std::string& format) {
   const bool scene = format == "scene" || format == "fusion-scene";
-  throw Error({ErrorKind::input,
-               "E0975",
-               file,
-               format.empty() ? "a document that names no format"
-                              : "a document of a format that is not drawn",
-               format,
-               scene
-                   ? fmt::format("sensorchar replay {} -o DIR makes a report, which is drawn", file)
-                   : kReadable});
+  throw input_error("E0975", file)
+      .says(format.empty() ? "a document that names no format"
+                           : "a document of a format that is not drawn")
+      .got(format)
+      .hint(scene ? fmt::format("sensorchar replay {} -o DIR makes a report, which is drawn", file)
+                  : kReadable);
 }
 
 [[noreturn]] void refuse_log(const std::string& file) {
-  throw Error(
-      {ErrorKind::input,
-       "E0975",
-       file,
-       "is no report, curve or sensor model; is it a log?",
-       "",
-       fmt::format("sensorchar allan {0} -o curve.csv (or psd) makes a curve of a log, sensorchar "
-                   "characterize {0} -o DIR a report: plot these",
-                   file)});
+  throw input_error("E0975", file)
+      .says("is no report, curve or sensor model; is it a log?")
+      .hint(
+          "sensorchar allan {0} -o curve.csv (or psd) makes a curve of a log, sensorchar "
+          "characterize {0} -o DIR a report: plot these",
+          file);
 }
 
 void read_document(FigureSource& out, const Document& document, const std::string& file) {
@@ -95,12 +87,9 @@ void refuse_empty(const FigureSource& source) {
   if (source.replay || !source.curves.empty() || !source.residuals.empty() ||
       !source.traces.empty())
     return;
-  throw Error({ErrorKind::input,
-               "E0975",
-               source.file,
-               "holds no curve that could be drawn",
-               "",
-               kReadable});
+  throw input_error("E0975", source.file)
+      .says("holds no curve that could be drawn")
+      .hint(kReadable);
 }
 
 void read_table(FigureSource& out, const std::string& file) {

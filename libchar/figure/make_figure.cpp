@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/figure/detail/curve_figures.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
@@ -42,41 +42,33 @@ std::string first_kind(std::span<const FigureSource> sources) {
 const FigureKind& kind_of(const std::string& word) {
   for (const FigureKind& kind : kKinds)
     if (kind.word == word) return kind;
-  throw Error(
-      {ErrorKind::usage,
-       "E0978",
-       "`kind`",
-       "no such figure",
-       word,
-       did_you_mean(nearest(word, figure_words()), "there are " + first_names(figure_words()))});
+  throw usage_error("E0978", "`kind`")
+      .says("no such figure")
+      .got(word)
+      .hint(
+          did_you_mean(nearest(word, figure_words()), "there are " + first_names(figure_words())));
 }
 
 void refuse_mixed(std::span<const FigureSource> sources, const FigureKind& kind) {
   for (const FigureSource& source : sources) {
     if (kind.of_replay && !source.replay)
-      refuse_kind(source, kind.word, "it is of replays, and this is the report of none");
+      throw kind_refusal(source, kind.word)
+          .says("it is of replays, and this is the report of none");
     if (!kind.of_replay && source.replay)
-      refuse_kind(source,
-                  kind.word,
-                  "this is the report of a replay, which has front, ranking, timeline and others");
+      throw kind_refusal(source, kind.word)
+          .says("this is the report of a replay, which has front, ranking, timeline and others");
   }
   if (kind.of_replay && sources.size() > 1)
-    throw Error({ErrorKind::usage,
-                 "E0978",
-                 sources[1].file,
-                 "a figure of a replay is of one report",
-                 "",
-                 "sensorchar compare A B holds two replays against each other"});
+    throw usage_error("E0978", sources[1].file)
+        .says("a figure of a replay is of one report")
+        .hint("sensorchar compare A B holds two replays against each other");
 }
 
 void refuse_unused(const FigureOptions& options, const FigureKind& kind) {
   const auto refuse = [&](const char* option, const char* what) {
-    throw Error({ErrorKind::usage,
-                 "E0978",
-                 option,
-                 fmt::format("the figure {} is of no {}", kind.word, what),
-                 "",
-                 "leave it out, or choose another `kind`"});
+    throw usage_error("E0978", option)
+        .says("the figure {} is of no {}", kind.word, what)
+        .hint("leave it out, or choose another `kind`");
   };
   if (!options.algorithm.empty() && !kind.of_algorithm) refuse("`algorithm`", "single algorithm");
   if (!options.input.empty() && !kind.of_replay) refuse("`input`", "replay");
@@ -109,26 +101,19 @@ std::vector<std::string> figure_words() {
 }
 
 Chart make_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
-  if (sources.empty()) throw Error({ErrorKind::usage, "E0205", "plot", "FILE is required", "", ""});
+  if (sources.empty()) throw usage_error("E0205", "plot").says("FILE is required");
   if (options.labels.size() > sources.size())
-    throw Error({ErrorKind::usage,
-                 "E0979",
-                 "`labels`",
-                 fmt::format("{} labels for {} files", options.labels.size(), sources.size()),
-                 "",
-                 "one a file, in their order"});
+    throw usage_error("E0979", "`labels`")
+        .says("{} labels for {} files", options.labels.size(), sources.size())
+        .hint("one a file, in their order");
   const FigureKind& kind = kind_of(options.kind.empty() ? first_kind(sources) : options.kind);
   refuse_mixed(sources, kind);
   refuse_unused(options, kind);
   Chart out = kind.make(with_names_apart(sources), options);
   for (const auto* axis : {&out.x, &out.y})
     if (axis->log && !(axis->low > 0))
-      throw Error({ErrorKind::usage,
-                   "E0981",
-                   axis == &out.x ? "`x_range`" : "`y_range`",
-                   "this axis is logarithmic: its range begins above zero",
-                   "",
-                   ""});
+      throw usage_error("E0981", axis == &out.x ? "`x_range`" : "`y_range`")
+          .says("this axis is logarithmic: its range begins above zero");
   out.kind = kind.word;
   out.title = options.title;
   if (!options.title.empty()) out.about = options.title;

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "libchar/core/document/coefficient_fields.hpp"
-#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/curve/power_laws.hpp"
 

@@ -55,7 +55,7 @@ struct FitBand {
       left_out_hz;  ///< below the upper end: broad peaks, the slowest coefficients
 };
 
-/// A first-order Gauss-Markov process (core/gauss_markov.hpp) in the record.
+/// A first-order Gauss-Markov process (model/sensor_model.hpp) in the record.
 struct GaussMarkovFit {
   Coefficient sigma;  ///< standard deviation, in the channel's unit
   Coefficient tau_s;  ///< correlation time; an interval without an upper end is infinite

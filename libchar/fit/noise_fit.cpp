@@ -9,10 +9,10 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/allan_fit.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
@@ -53,22 +53,14 @@ struct Attempt {
 void require_enough(std::size_t bins, const TermSet& terms) {
   const std::size_t wanted = count_of(terms);
   if (wanted == 0) {
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "",
-                 "no noise term was asked for",
-                 "",
-                 "offer at least white noise"});
+    throw usage_error("E0201")
+        .says("no noise term was asked for")
+        .hint("offer at least white noise");
   }
   if (bins >= wanted) return;
-  throw Error(
-      {ErrorKind::numeric,
-       "E0401",
-       "",
-       fmt::format(
-           "{} bins of the spectrum are fewer than the {} noise terms to fit", bins, wanted),
-       "",
-       "use a longer record"});
+  throw numeric_error("E0401")
+      .says("{} bins of the spectrum are fewer than the {} noise terms to fit", bins, wanted)
+      .hint("use a longer record");
 }
 
 BinProblem problem_of(const std::vector<PowerBin>& bins, const Band& band, double rate_hz) {

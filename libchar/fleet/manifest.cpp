@@ -16,9 +16,9 @@
 #include "libchar/characterize/settings.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/schema.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/log_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
@@ -49,7 +49,7 @@ std::string trimmed(const std::string& cell) {
 }
 
 [[noreturn]] void refuse(const std::string& path, int line, const std::string& what) {
-  throw Error({ErrorKind::input, "E0781", fmt::format("{}:{}:1", path, line), what});
+  throw input_error("E0781", fmt::format("{}:{}:1", path, line)).says(what);
 }
 
 /// A cell that begins with a quotation mark ends with one, and has two for each of its own (RFC
@@ -209,11 +209,9 @@ void check_heads(const TableText& table, const std::string& path) {
   head.column = 1;
   for (const std::string& one : table.heads) {
     if (std::count(table.heads.begin(), table.heads.end(), one) > 1)
-      throw Error({ErrorKind::input,
-                   "E0781",
-                   fmt::format("{}:{}:1", path, table.head_line),
-                   "a column stands twice",
-                   one});
+      throw input_error("E0781", fmt::format("{}:{}:1", path, table.head_line))
+          .says("a column stands twice")
+          .got(one);
     Document value;
     value.kind = Document::Kind::text;
     head.map.push_back({one, head.line, 1, value});
@@ -335,46 +333,36 @@ std::vector<std::string> files_of_pattern(const std::string& word) {
     out.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   ::globfree(&found);
   if (out.empty())
-    throw Error({ErrorKind::input,
-                 "E0780",
-                 "",
-                 "no file matches this pattern",
-                 word,
-                 "patterns are relative to the folder that you are in"});
+    throw input_error("E0780")
+        .says("no file matches this pattern")
+        .got(word)
+        .hint("patterns are relative to the folder that you are in");
   return out;
 }
 
 void refuse_manifest_among(const std::vector<std::string>& logs) {
   const auto manifest = std::find_if(logs.begin(), logs.end(), is_manifest);
   if (manifest == logs.end()) return;
-  throw Error({ErrorKind::usage,
-               "E0205",
-               *manifest,
-               "this is a manifest, and stands among logs",
-               "",
-               "name one manifest, or logs"});
+  throw usage_error("E0205", *manifest)
+      .says("this is a manifest, and stands among logs")
+      .hint("name one manifest, or logs");
 }
 
 void check_devices(const Manifest& manifest, const std::string& path) {
-  if (manifest.devices.empty())
-    throw Error({ErrorKind::input, "E0780", path, "the fleet has no device"});
+  if (manifest.devices.empty()) throw input_error("E0780", path).says("the fleet has no device");
   for (const FleetDevice& one : manifest.devices) {
     if (one.device.empty() || first_invalid_utf8(one.device) != std::string::npos)
-      throw Error({ErrorKind::input,
-                   "E0780",
-                   one.where,
-                   "a device needs a name in UTF-8",
-                   one.device,
-                   "give it a name"});
+      throw input_error("E0780", one.where)
+          .says("a device needs a name in UTF-8")
+          .got(one.device)
+          .hint("give it a name");
     // Plans and tasks are JSON: another path would stand there, and be sought for ever.
     for (const std::string* text : {&one.log, &one.limits, &one.type, &one.batch})
       if (first_invalid_utf8(*text) != std::string::npos)
-        throw Error({ErrorKind::input,
-                     "E0780",
-                     one.where,
-                     "paths and words of a fleet are in UTF-8, and this is not",
-                     *text,
-                     "rename the file or its folder, or save the manifest in UTF-8"});
+        throw input_error("E0780", one.where)
+            .says("paths and words of a fleet are in UTF-8, and this is not")
+            .got(*text)
+            .hint("rename the file or its folder, or save the manifest in UTF-8");
   }
 }
 

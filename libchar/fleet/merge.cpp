@@ -6,8 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "libchar/core/error.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
@@ -28,19 +27,15 @@ struct Missing {
 void refuse_missing(const FleetPlan& plan, const Missing& missing, const fs::path& folder) {
   if (missing.units.empty()) return;
   const FleetUnit& first = plan.units[missing.units[0]];
-  throw Error(
-      {ErrorKind::input,
-       "E0789",
-       folder.string(),
-       fmt::format("{} of {} units have no result, the first is {} of {}{}",
-                   missing.units.size(),
-                   plan.units.size(),
-                   task_file(missing.units[0]),
-                   plan.devices[first.device].device,
-                   missing.damaged.empty() ? "" : "; " + missing.damaged[0]),
-       "",
-       fmt::format("run them with: sensorchar fleet run {}, or merge what there is with `partial`",
-                   folder.string())});
+  throw input_error("E0789", folder.string())
+      .says("{} of {} units have no result, the first is {} of {}{}",
+            missing.units.size(),
+            plan.units.size(),
+            task_file(missing.units[0]),
+            plan.devices[first.device].device,
+            missing.damaged.empty() ? "" : "; " + missing.damaged[0])
+      .hint("run them with: sensorchar fleet run {}, or merge what there is with `partial`",
+            folder.string());
 }
 
 /// What the plan says of the device, over what its log said.
@@ -117,13 +112,10 @@ bool overlap(const std::vector<std::string>& a, const std::vector<std::string>& 
                        printable(fleet.folder.string()));
   };
   const PlannedFleet& fleet = fleets[other.fleet];
-  throw Error(
-      {ErrorKind::input,
-       "E0783",
-       fleet.folder.string(),
-       fmt::format("the logs of {} and {} are the same, byte by byte", name(one), name(other)),
-       fleet.plan.devices[other.device].log,
-       "leave one of the fleets out, or plan it without that log: it would count twice"});
+  throw input_error("E0783", fleet.folder.string())
+      .says("the logs of {} and {} are the same, byte by byte", name(one), name(other))
+      .got(fleet.plan.devices[other.device].log)
+      .hint("leave one of the fleets out, or plan it without that log: it would count twice");
 }
 
 }  // namespace
@@ -141,12 +133,9 @@ std::vector<PlannedFleet> read_fleets(const std::vector<std::string>& folders) {
   std::vector<PlannedFleet> out;
   for (std::size_t k = 0; k < sorted.size(); ++k) {
     if (k > 0 && whole(sorted[k]) == whole(sorted[k - 1]))
-      throw Error({ErrorKind::usage,
-                   "E0795",
-                   sorted[k],
-                   "this fleet is named twice",
-                   "",
-                   "name each folder once: its devices would count twice"});
+      throw usage_error("E0795", sorted[k])
+          .says("this fleet is named twice")
+          .hint("name each folder once: its devices would count twice");
     out.push_back({sorted[k], read_plan(sorted[k])});
   }
   return out;

@@ -18,10 +18,10 @@
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/document/schema.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
@@ -66,12 +66,9 @@ LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options, 
   LookedAt out;
   try {
     if (read_once(device.log))
-      throw Error({ErrorKind::input,
-                   "E0103",
-                   device.log,
-                   "is not a regular file; logs of a fleet are read by workers, and again",
-                   "",
-                   "copy it to a file first"});
+      throw input_error("E0103", device.log)
+          .says("is not a regular file; logs of a fleet are read by workers, and again")
+          .hint("copy it to a file first");
     check_characterization(device.log, options);
     out.head = read_log_head(device.log, options.reading);
     if (by_channel) out.in_log = own_names(out.head, device, options.reading);
@@ -126,22 +123,21 @@ void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& lo
   if (manifest.file.empty())
     for (const LookedAt& log : logs)
       if (log.wrong_option) throw Error(*log.wrong_option);
-  throw Error({ErrorKind::input,
-               "E0782",
-               manifest.file,
-               fmt::format("{} of {} logs cannot be read: {}{}",
-                           count,
-                           logs.size(),
-                           fmt::join(said, "; "),
-                           count > kNamed ? "; …" : ""),
-               "",
-               hint_of_unreadable(manifest, any_left)});
+  throw input_error("E0782", manifest.file)
+      .says("{} of {} logs cannot be read: {}{}",
+            count,
+            logs.size(),
+            fmt::join(said, "; "),
+            count > kNamed ? "; …" : "")
+      .hint(hint_of_unreadable(manifest, any_left));
 }
 
 /// What a file of limits refuses, with the entry that names it.
 [[noreturn]] void refuse_limits(const FleetDevice& device, Problem problem) {
   const std::string hint = std::exchange(problem.hint, "");
-  throw Error({problem.kind, problem.code, device.where, "limits: " + one_line(problem), "", hint});
+  throw Refusal(problem.kind, problem.code, device.where)
+      .says("limits: " + one_line(problem))
+      .hint(hint);
 }
 
 /// Before hours of work, not behind them. By path.
@@ -199,16 +195,13 @@ void refuse_same_logs(const Manifest& manifest, const std::vector<LookedAt>& log
     if (fresh) continue;
     const FleetDevice &one = manifest.devices[at->second], &other = manifest.devices[d];
     const bool taken = one.sha256.empty() && other.sha256.empty();
-    throw Error(
-        {ErrorKind::input,
-         "E0783",
-         manifest.devices[d].where,
-         fmt::format("the logs of {} and {} {}",
-                     printable(one.device),
-                     printable(other.device),
-                     taken ? "are the same, byte by byte" : "have one digest, as it is stated"),
-         manifest.devices[d].log,
-         "leave one of them out: it would count twice"});
+    throw input_error("E0783", manifest.devices[d].where)
+        .says("the logs of {} and {} {}",
+              printable(one.device),
+              printable(other.device),
+              taken ? "are the same, byte by byte" : "have one digest, as it is stated")
+        .got(manifest.devices[d].log)
+        .hint("leave one of them out: it would count twice");
   }
 }
 
@@ -216,13 +209,10 @@ void refuse_same_logs(const Manifest& manifest, const std::vector<LookedAt>& log
 void check_by_channel(const Manifest& manifest) {
   for (const CharacterizeOptions& one : manifest.options)
     if (!one.temperature.empty() && (!one.reading.names.empty() || one.reading.units.size() > 1))
-      throw Error({ErrorKind::usage,
-                   "E0702",
-                   "",
-                   "with `temperature` and lists of `names` or `units` no unit can be of one "
-                   "channel",
-                   one.temperature,
-                   "leave `by_channel` out, or give units by name with `channel_unit`"});
+      throw usage_error("E0702")
+          .says("with `temperature` and lists of `names` or `units` no unit can be of one channel")
+          .got(one.temperature)
+          .hint("leave `by_channel` out, or give units by name with `channel_unit`");
 }
 
 /// Which channels are a unit: each alone; the thermometer, which all of them read, with the one
@@ -330,13 +320,9 @@ PlannedDevice parse_device(const Document& document, const std::string& path) {
   return out;
 }
 
-[[noreturn]] void refuse_plan(const fs::path& file, const std::string& what) {
-  throw Error({ErrorKind::input,
-               "E0784",
-               file.string(),
-               what,
-               "",
-               "make a plan with: sensorchar fleet plan MANIFEST -o DIR"});
+Refusal plan_refusal(const fs::path& file) {
+  return input_error("E0784", file.string())
+      .hint("make a plan with: sensorchar fleet plan MANIFEST -o DIR");
 }
 
 /// One after the other: the text of a plan of a hundred thousand units is larger than the plan.
@@ -376,13 +362,15 @@ class PlanReader {
 
   FleetPlan finish() {
     const bool all = plan_.devices.size() == devices_ && plan_.units.size() == units_;
-    if (!head_ || (!all && !wrong_)) refuse_plan(file_, "the plan is cut");
+    if (!head_ || (!all && !wrong_)) throw plan_refusal(file_).says("the plan is cut");
     // Which device a unit is of stands nowhere else.
     if (digest_.finish() != sha256_)
-      refuse_plan(file_, "the plan was changed after it was made: its digest is another one");
+      throw plan_refusal(file_).says(
+          "the plan was changed after it was made: its digest is another one");
     if (wrong_) throw Error(*wrong_);  // as it was written: by another version of the program
     for (const FleetUnit& unit : plan_.units)
-      if (unit.device >= devices_) refuse_plan(file_, "a unit is of no device of the plan");
+      if (unit.device >= devices_)
+        throw plan_refusal(file_).says("a unit is of no device of the plan");
     return std::move(plan_);
   }
 
@@ -401,7 +389,7 @@ class PlanReader {
     try {
       return parse_json_document(line, path_);
     } catch (const Error&) {
-      refuse_plan(file_, "its first line is cut, or that of no plan");
+      throw plan_refusal(file_).says("its first line is cut, or that of no plan");
     }
   }
 
@@ -505,12 +493,9 @@ std::optional<ReplacedPlan> plan_in(const fs::path& folder) {
   // Damaged ones are replaced as others are; beside tasks it was one.
   const std::string begin = fmt::format(R"({{"format":"{}")", kPlanFormat);
   if (!text.starts_with(begin) && !fs::exists(folder / task_file(0), ignored))
-    throw Error({ErrorKind::input,
-                 "E0784",
-                 file.string(),
-                 "this file is no plan of a fleet, and would be overwritten",
-                 "",
-                 "move it away, or plan into another folder"});
+    throw input_error("E0784", file.string())
+        .says("this file is no plan of a fleet, and would be overwritten")
+        .hint("move it away, or plan into another folder");
   ReplacedPlan out;
   try {
     const Document head = parse_json_document(text.substr(0, text.find('\n')), file.string());
@@ -572,14 +557,15 @@ fs::path fleet_of_task(const std::string& file) {
   const fs::path folder = fs::absolute(file).parent_path().parent_path();
   std::error_code ignored;
   if (!fs::exists(folder / kPlanFile, ignored))
-    refuse_plan(file, "this task is in the folder of no fleet: there is no plan beside it");
+    throw plan_refusal(file).says(
+        "this task is in the folder of no fleet: there is no plan beside it");
   return folder;
 }
 
 FleetPlan read_plan(const fs::path& folder) {
   const fs::path file = folder / kPlanFile;
   std::error_code ignored;
-  if (!fs::exists(file, ignored)) refuse_plan(file, "there is no plan in this folder");
+  if (!fs::exists(file, ignored)) throw plan_refusal(file).says("there is no plan in this folder");
   PlanReader reader(file);
   for_lines_of(file.string(), [&](std::string_view line) { reader.take(line); });
   return reader.finish();

@@ -9,9 +9,9 @@
 
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/settings.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/process/version.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/report/report_files.hpp"
@@ -22,31 +22,23 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void refuse_changed(const FleetUnit& unit) {
-  throw Error({ErrorKind::input,
-               "E0785",
-               unit.log,
-               "the log was changed after the fleet was planned",
-               "",
-               "plan the fleet again: units of logs that did not change keep their results"});
+  throw input_error("E0785", unit.log)
+      .says("the log was changed after the fleet was planned")
+      .hint("plan the fleet again: units of logs that did not change keep their results");
 }
 
 [[noreturn]] void refuse_other_digest(const FleetUnit& unit, const std::string& found) {
   if (!unit.stated) refuse_changed(unit);
-  throw Error({ErrorKind::input,
-               "E0785",
-               unit.log,
-               "the log is not the one that was planned: its digest is not the one that is stated",
-               found,
-               "state the digest of this log, or none, and plan the fleet again"});
+  throw input_error("E0785", unit.log)
+      .says("the log is not the one that was planned: its digest is not the one that is stated")
+      .got(found)
+      .hint("state the digest of this log, or none, and plan the fleet again");
 }
 
 [[noreturn]] void refuse_absent(const FleetUnit& unit) {
-  throw Error({ErrorKind::again,
-               "E0786",
-               unit.log,
-               "the log that was planned cannot be opened now",
-               "",
-               "mount or restore it and run the unit again, or plan the fleet without it"});
+  throw Refusal(ErrorKind::again, "E0786", unit.log)
+      .says("the log that was planned cannot be opened now")
+      .hint("mount or restore it and run the unit again, or plan the fleet without it");
 }
 
 void check_log_is_there(const FleetUnit& unit) {
@@ -99,16 +91,13 @@ std::vector<NamedState> states_of(const FleetUnit& unit, const fs::path& fleet) 
     for (const std::string& file : files) states.push_back(state_in_file(file));
   }
   if (!missing.empty())
-    throw Error({ErrorKind::again,
-                 "E0787",
-                 unit.log,
-                 fmt::format("{} of {} stretches of this log are not there yet: {}{}",
-                             missing.size(),
-                             unit.parts.size(),
-                             missing[0],
-                             missing.size() > 1 ? " …" : ""),
-                 "",
-                 "run them first"});
+    throw Refusal(ErrorKind::again, "E0787", unit.log)
+        .says("{} of {} stretches of this log are not there yet: {}{}",
+              missing.size(),
+              unit.parts.size(),
+              missing[0],
+              missing.size() > 1 ? " …" : "")
+        .hint("run them first");
   return states;
 }
 
@@ -238,12 +227,9 @@ UnitRun run_unit(const FleetUnit& unit, const fs::path& fleet, Progress& progres
     problem.kind = ErrorKind::again;
     throw Error(problem);
   } catch (const std::bad_alloc&) {
-    throw Error({ErrorKind::again,
-                 "E0788",
-                 unit.log,
-                 "not enough memory for this unit",
-                 "",
-                 "give the job more memory"});
+    throw Refusal(ErrorKind::again, "E0788", unit.log)
+        .says("not enough memory for this unit")
+        .hint("give the job more memory");
   }
 }
 

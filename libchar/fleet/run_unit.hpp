@@ -18,9 +18,7 @@ enum class UnitOutcome {
 };
 template <>
 inline constexpr auto enum_table<UnitOutcome> =
-    enum_words<UnitOutcome>({{UnitOutcome::done, "done"},
-                             {UnitOutcome::already_there, "already_there"},
-                             {UnitOutcome::no_result, "no_result"}});
+    enum_words<UnitOutcome, "done already_there no_result">;
 
 struct UnitRun {
   UnitOutcome outcome = UnitOutcome::done;

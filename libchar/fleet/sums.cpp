@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/manifest_path.hpp"
 
@@ -63,12 +63,10 @@ std::optional<SumLine> sum_line(std::string_view line) {
 
 void refuse_another(const StatedDigest& one, const StatedDigest& other, const std::string& log) {
   if (one.sha256 == other.sha256) return;
-  throw Error({ErrorKind::input,
-               "E0794",
-               one.where,
-               "another digest is stated for this log at " + other.where,
-               log,
-               "leave the wrong one out"});
+  throw input_error("E0794", one.where)
+      .says("another digest is stated for this log at " + other.where)
+      .got(log)
+      .hint("leave the wrong one out");
 }
 
 void state(const std::string& log, const StatedDigest& one, StatedDigests& out) {
@@ -99,12 +97,10 @@ StatedDigests parse_sums(std::string_view text, const std::string& path) {
     const std::string where = fmt::format("{}:{}:1", path, number);
     const auto found = sum_line(line);
     if (!found)
-      throw Error({ErrorKind::input,
-                   "E0792",
-                   where,
-                   "expected a digest of 64 hexadecimal digits, two blanks and the path of a log",
-                   std::string(line),
-                   "write the file with: sha256sum LOG… > FILE"});
+      throw input_error("E0792", where)
+          .says("expected a digest of 64 hexadecimal digits, two blanks and the path of a log")
+          .got(std::string(line))
+          .hint("write the file with: sha256sum LOG… > FILE");
     state(absolute_path(found->path, folder), {found->sha256, where}, out);
   }
   return out;

@@ -22,9 +22,7 @@ enum class UnitKind {
   join,     ///< the partial states of a log to its report
 };
 template <>
-inline constexpr auto enum_table<UnitKind> = enum_words<UnitKind>({{UnitKind::log, "log"},
-                                                                   {UnitKind::stretch, "stretch"},
-                                                                   {UnitKind::join, "join"}});
+inline constexpr auto enum_table<UnitKind> = enum_words<UnitKind, "log stretch join">;
 
 struct UnitCost {
   double seconds = 0;              ///< on a core of the machine that planned

@@ -16,8 +16,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fusion/aligner.hpp"
 #include "libchar/fusion/detail/alignment_samples.hpp"
 
@@ -36,13 +36,10 @@ constexpr double kLikeEnough = 0.5;     // correlation of the slow parts, at lea
 constexpr double kDoubtfulDelay = 0.5;  // samples of standard error
 constexpr double kUnknownValue = ChannelAlignment::kUnknown;
 
-[[noreturn]] void cannot(const std::string& what, const std::string& got) {
-  throw Error({ErrorKind::numeric,
-               "E0911",
-               "",
-               "no alignment can be learnt: " + what,
-               got,
-               "learn it on a stretch in which the sensors move and are there"});
+Refusal refusal(const std::string& what) {
+  return numeric_error("E0911")
+      .says("no alignment can be learnt: " + what)
+      .hint("learn it on a stretch in which the sensors move and are there");
 }
 
 double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Index lag) {
@@ -120,8 +117,8 @@ class Learner {
         interior_[static_cast<std::size_t>(t)] = true;
     }
     if (std::count(interior_.begin(), interior_.end(), true) < kFewestInstants)
-      cannot("the stretch is too short",
-             fmt::format("{} instants; {} are needed", m_, kFewestInstants + 2 * kAlignmentMargin));
+      throw refusal("the stretch is too short")
+          .got("{} instants; {} are needed", m_, kFewestInstants + 2 * kAlignmentMargin);
     for (Index c = 0; c < raw_.cols(); ++c) {
       out_.limits.push_back(limits_of(raw_.col(c)));
       for (Index t = 0; t < m_; ++t)
@@ -140,7 +137,7 @@ class Learner {
         out_.channels[static_cast<std::size_t>(i)].used = false;
     }
     if (used_.size() < (blind() ? 2U : 1U))
-      cannot("too few sensors have samples that change", fmt::format("{} of {}", used_.size(), n_));
+      throw refusal("too few sensors have samples that change").got("{} of {}", used_.size(), n_);
     can_delay_.assign(used_.size(), false);
     residual_power_.resize(0);
   }
@@ -249,8 +246,8 @@ class Learner {
         rows_.push_back(t);
     const auto rows = static_cast<Index>(rows_.size());
     if (rows < kFewestInstants)
-      cannot("too few instants have samples of all sensors",
-             fmt::format("{}; {} are needed", rows, kFewestInstants));
+      throw refusal("too few instants have samples of all sensors")
+          .got("{}; {} are needed", rows, kFewestInstants);
     out_.instants = rows;
     batches_ = static_cast<std::size_t>(std::clamp<Index>(rows / 40, 4, 30));
     x0_ = x_(rows_).mean();

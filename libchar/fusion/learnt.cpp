@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar::fusion {
@@ -11,9 +11,8 @@ namespace {
 
 constexpr const char* kHint = "write the file anew with the replay that learnt it";
 
-[[noreturn]] void refuse_learnt(std::string_view name, const std::string& what, const char* hint) {
-  throw Error(
-      {ErrorKind::input, "E0866", "", "learnt." + std::string(name) + ": " + what, "", hint});
+Refusal learnt_refusal(std::string_view name, const std::string& what) {
+  return input_error("E0866").says("learnt." + std::string(name) + ": " + what);
 }
 
 }  // namespace
@@ -24,14 +23,14 @@ const std::vector<double>& LearntExchange::find(std::string_view name) {
       taken_[i] = 1;
       return learnt_[i].values;
     }
-  refuse_learnt(name, "is missing", kHint);
+  throw learnt_refusal(name, "is missing").hint(kHint);
 }
 
 void LearntExchange::check(std::string_view name, std::size_t wanted, std::size_t found) const {
   if (wanted == found) return;
-  refuse_learnt(name,
-                "expected " + std::to_string(wanted) + " numbers, found " + std::to_string(found),
-                "the file must name as many sensors as it was learnt from");
+  throw learnt_refusal(
+      name, "expected " + std::to_string(wanted) + " numbers, found " + std::to_string(found))
+      .hint("the file must name as many sensors as it was learnt from");
 }
 
 void LearntExchange::number(std::string_view name, double& value) {
@@ -63,20 +62,18 @@ void LearntExchange::list(std::string_view name, std::vector<double>& values) {
 
 void LearntExchange::needs_same_rate(std::string_view what) const {
   if (!taking_in_ || std::abs(rate_ratio_ - 1) <= kSameRate) return;
-  throw Error({ErrorKind::input,
-               "E0867",
-               "",
-               "the log's rate is " + brief_text(rate_ratio_, 4) +
-                   " times that of the log where this was learnt: " + std::string(what) +
-                   " would mean something else",
-               "",
-               "learn on a log of this rate, or choose another algorithm"});
+  throw input_error("E0867")
+      .says("the log's rate is " + brief_text(rate_ratio_, 4) +
+            " times that of the log where this was learnt: " + std::string(what) +
+            " would mean something else")
+      .hint("learn on a log of this rate, or choose another algorithm");
 }
 
 void LearntExchange::finish() const {
   for (std::size_t i = 0; i < learnt_.size(); ++i)
     if (taking_in_ && taken_[i] == 0)
-      refuse_learnt(learnt_[i].name, "this algorithm learns nothing of this name", kHint);
+      throw learnt_refusal(learnt_[i].name, "this algorithm learns nothing of this name")
+          .hint(kHint);
 }
 
 }  // namespace libchar::fusion

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/spelling.hpp"
 
@@ -23,14 +23,12 @@ std::string range_of(const Option& option) {
 [[noreturn]] void unknown(std::span<const Option> table, std::string_view name) {
   std::vector<std::string> names;
   for (const Option& option : table) names.emplace_back(option.name);
-  throw Error({ErrorKind::usage,
-               "E0850",
-               "",
-               "no such option",
-               std::string(name),
-               did_you_mean(nearest(name, names),
-                            names.empty() ? "this algorithm has no options"
-                                          : "its options are " + first_names(names))});
+  throw usage_error("E0850")
+      .says("no such option")
+      .got(std::string(name))
+      .hint(did_you_mean(nearest(name, names),
+                         names.empty() ? "this algorithm has no options"
+                                       : "its options are " + first_names(names)));
 }
 
 }  // namespace
@@ -47,11 +45,9 @@ void Settings::set(std::string_view name, double value) {
     const bool fits = value >= option.low && value <= option.high && std::isfinite(value) &&
                       (!option.whole || value == std::floor(value));
     if (!fits)
-      throw Error({ErrorKind::usage,
-                   "E0851",
-                   "",
-                   std::string(name) + " takes " + range_of(option),
-                   shortest(value)});
+      throw usage_error("E0851")
+          .says(std::string(name) + " takes " + range_of(option))
+          .got(shortest(value));
     values_[i] = value;
     return;
   }

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
-#include "libchar/fusion/detail/fault/watched_runner.hpp"
+#include "libchar/fusion/detail/fault/fault_detector.hpp"
+#include "libchar/fusion/runner.hpp"
 #include "libchar/fusion/why_not.hpp"
 #include "libchar_algorithms.hpp"  // every header of algorithms/, found by CMake
 
@@ -19,6 +23,114 @@
 
 namespace libchar::fusion {
 namespace {
+
+constexpr double kNoisy = 2;  ///< of its variance
+constexpr Eigen::Index kWatchedAtOnce = 256;
+
+// The fault detector (fault_detector.hpp) in front of any estimate that goes on without a missing
+// sample: what a sensor says while it is out is missing for the estimate. Weights that are fixed
+// know nothing of noise: a sensor whose variance is twice what it was is out as well (with weight w
+// of n alike it would cost more than it brings from (n + 1)/(n - 1) times on).
+
+/// What the algorithms that can be watched have behind their own options.
+inline constexpr std::array kWatchOptions{
+    Option{"fault_detection",
+           "",
+           0,
+           0,
+           1,
+           "1: sensors that fail are left out, found by cumulative sums as minque does; 0: all "
+           "are used",
+           true},
+    Option{"false_alarm_s",
+           "s",
+           1e5,
+           1,
+           1e15,
+           "mean time between two false alarms of the array (without a rate: per 2e7 samples)"},
+    Option{"recovery_window",
+           "samples",
+           0,
+           0,
+           1e9,
+           "own samples that must agree with the others before a channel comes in again (0: 200, "
+           "or those of 2 s "
+           "where they are fewer)",
+           true}};
+
+class WatchedRunner final : public Runner {
+ public:
+  /// The settings have `kWatchOptions`.
+  WatchedRunner(const Array& array, const Settings& settings, std::unique_ptr<Runner> watched)
+      : array_(array),
+        options_{settings["false_alarm_s"], static_cast<std::int64_t>(settings["recovery_window"])},
+        watched_(std::move(watched)),
+        used_(array.channels, kWatchedAtOnce) {
+    if (array.channels > 2 * array.inputs() && array.channels <= kMostPaired)
+      detector_.emplace(array_, options_);
+  }
+
+  const Description& description() const override { return watched_->description(); }
+  void learn(const Block& samples, const Block& truth) override { watched_->learn(samples, truth); }
+  // A detector of its own: that of the run begins with its first step.
+  void look(const Block& samples) override {
+    if (!detector_) return watched_->look(samples);
+    if (!ahead_) ahead_.emplace(array_, options_);
+    for (Eigen::Index begin = 0; begin < samples.cols(); begin += kWatchedAtOnce) {
+      const Eigen::Index count = std::min(kWatchedAtOnce, samples.cols() - begin);
+      leave_out(*ahead_, samples.middleCols(begin, count));
+      watched_->look(used_.leftCols(count));
+    }
+  }
+  void finish_learning() override { watched_->finish_learning(); }
+  bool exchange(LearntExchange& with) override { return watched_->exchange(with); }
+  void run(const Block& samples, BlockOut x, BlockOut variance) override {
+    if (!detector_) return watched_->run(samples, x, variance);
+    for (Eigen::Index begin = 0; begin < samples.cols(); begin += kWatchedAtOnce) {
+      const Eigen::Index count = std::min(kWatchedAtOnce, samples.cols() - begin);
+      leave_out(*detector_, samples.middleCols(begin, count));
+      watched_->run(
+          used_.leftCols(count), x.middleCols(begin, count), variance.middleCols(begin, count));
+    }
+  }
+  std::optional<Eigen::MatrixXd> weights() const override { return watched_->weights(); }
+  std::optional<Eigen::VectorXd> variances() const override { return watched_->variances(); }
+  const FaultLog* faults() const override { return detector_ ? &detector_->log() : &none_; }
+  void remarks(Findings& warnings) const override {
+    watched_->remarks(warnings);
+    const std::string_view name = description().name;
+    if (detector_) return detector_->remarks(name, warnings);
+    warnings.add(
+        "faults_not_watched",
+        std::string(name) +
+            " looks for no faults: the search takes more than two sensors an input, and at "
+            "most " +
+            std::to_string(kMostPaired));
+  }
+
+ private:
+  /// What is left of a block of samples, at most `kWatchedAtOnce` instants.
+  void leave_out(FaultDetector& detector, const Block& samples);
+
+  Array array_;
+  FaultDetectorOptions options_;
+  std::unique_ptr<Runner> watched_;
+  std::optional<FaultDetector> detector_;  // none: too few sensors to tell which of them fails
+  std::optional<FaultDetector> ahead_;     // of the run while it is looked at
+  FaultLog none_;
+  Eigen::MatrixXd used_;
+};
+
+void WatchedRunner::leave_out(FaultDetector& detector, const Block& samples) {
+  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+    detector.step(samples.data() + k * samples.outerStride());
+    for (Eigen::Index i = 0; i < samples.rows(); ++i) {
+      const auto channel = static_cast<std::size_t>(i);
+      const bool out = detector.out(channel) || detector.noisy(channel) > kNoisy;
+      used_(i, k) = out ? std::numeric_limits<double>::quiet_NaN() : samples(i, k);
+    }
+  }
+}
 
 /// Estimates with weights that go on without a missing sample, and look for no faults themselves.
 template <Algorithm A>
@@ -57,7 +169,7 @@ constexpr auto kOptions = all_options<A>();
 template <Algorithm A>
 std::unique_ptr<Runner> make(const Array& array, const Settings& settings) {
   if (std::string sentence = why_not(A::description, array); !sentence.empty())
-    throw Error({ErrorKind::usage, "E0852", "", std::move(sentence)});
+    throw usage_error("E0852").says(std::move(sentence));
   auto runner = std::make_unique<RunnerOf<A>>(array, settings);
   if constexpr (kWatchable<A>)
     if (settings["fault_detection"] == 1)
@@ -142,12 +254,10 @@ const Entry& algorithm(std::string_view name) {
   names.reserve(kAlgorithms.size());
   for (const Entry& candidate : kAlgorithms) names.emplace_back(candidate.description->name);
   const auto near = nearest(name, names);
-  throw Error({ErrorKind::usage,
-               "E0853",
-               "",
-               "no fusion algorithm has this name",
-               std::string(name),
-               did_you_mean(near, "`algorithms` names them")});
+  throw usage_error("E0853")
+      .says("no fusion algorithm has this name")
+      .got(std::string(name))
+      .hint(did_you_mean(near, "`algorithms` names them"));
 }
 
 }  // namespace libchar::fusion

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 
@@ -100,12 +100,10 @@ std::vector<std::vector<std::string>> channel_names(const std::string& path,
     if (!wild(k)) continue;
     std::erase_if(out[k], [&](const std::string& name) { return !taken.insert(name).second; });
     if (out[k].empty())
-      throw Error({ErrorKind::usage,
-                   "E0320",
-                   path,
-                   "every channel that matches is named elsewhere",
-                   words[k],
-                   "leave the pattern out"});
+      throw usage_error("E0320", path)
+          .says("every channel that matches is named elsewhere")
+          .got(words[k])
+          .hint("leave the pattern out");
     std::sort(out[k].begin(), out[k].end(), comes_before);
   }
   return out;

@@ -91,12 +91,6 @@ const Format* written_format_by_suffix(const std::string& path) {
   return nullptr;
 }
 
-std::vector<LogFormat> log_formats() {
-  std::vector<LogFormat> descriptions;
-  for (const Format& format : formats()) descriptions.push_back(format.about);
-  return descriptions;
-}
-
 std::string readable_files() {
   std::vector<std::string_view> files;
   for (const Format* format : by_name()) {

@@ -31,9 +31,6 @@ struct LogFormat {
   bool from_pipes = false;      ///< can be read from standard input and named pipes
 };
 
-/// All of them, in the order in which files are asked whether they are of this format.
-std::vector<LogFormat> log_formats();
-
 /// ".csv, .npy, raw with sidecar": the files that are read, for help texts.
 std::string readable_files();
 

@@ -40,10 +40,6 @@ class Meters final : public BlockSink {
   std::vector<QualityMeter> meters_;
 };
 
-}  // namespace
-
-namespace {
-
 Inspection inspect_rows(const std::string& path, const ReadOptions& options, Progress& progress) {
   Meters meters(options.threads);
   Inspection inspection;

@@ -4,17 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <optional>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
@@ -530,10 +529,6 @@ double tidy(double step) {
   return step;
 }
 
-}  // namespace
-
-namespace {
-
 /// How the samples begin: what a part before them goes on with.
 struct Beginning {
   double value = 0;         ///< the first one that is there
@@ -749,10 +744,7 @@ void QualityMeter::State::runs(const double* x, const double* before, std::size_
   }
 }
 
-QualityMeter::QualityMeter() : state_(std::make_unique<State>()) {}
-QualityMeter::~QualityMeter() = default;
-QualityMeter::QualityMeter(QualityMeter&&) noexcept = default;
-QualityMeter& QualityMeter::operator=(QualityMeter&&) noexcept = default;
+QualityMeter::QualityMeter() : state_(detail::hidden<State>()) {}
 
 void QualityMeter::push(std::span<const double> samples) {
   state_->push(samples);
@@ -1039,12 +1031,9 @@ ChannelQuality QualityMeter::finish() const {
 
 double known_rate_hz(const LogInfo& info) {
   if (info.time.rate_hz > 0) return info.time.rate_hz;
-  throw Error({ErrorKind::numeric,
-               "E0402",
-               info.file,
-               "the sampling rate is not known",
-               "",
-               "a log without time stamps needs `rate_hz`"});
+  throw numeric_error("E0402", info.file)
+      .says("the sampling rate is not known")
+      .hint("a log without time stamps needs `rate_hz`");
 }
 
 }  // namespace libchar

@@ -2,12 +2,12 @@
 // What a channel's samples say about the instrument behind them, before any noise analysis.
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/core/numeric/state_archive.hpp"
 #include "libchar/log/recording.hpp"
 
@@ -51,9 +51,6 @@ struct ChannelQuality {
 class QualityMeter {
  public:
   QualityMeter();
-  ~QualityMeter();
-  QualityMeter(QualityMeter&&) noexcept;
-  QualityMeter& operator=(QualityMeter&&) noexcept;
   void push(std::span<const double> samples);
   ChannelQuality finish() const;
 
@@ -65,7 +62,7 @@ class QualityMeter {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 /// The sampling rate. Throws Error(numeric) where it is not known.

@@ -14,10 +14,10 @@
 #include <map>
 #include <string>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/process/thread_limit.hpp"
 #include "libchar/core/process/work.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -39,18 +39,15 @@ namespace {
 std::string front_of(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0)
-    throw Error(
-        {ErrorKind::input, "E0101", path, std::string("cannot open: ") + std::strerror(errno)});
+    throw input_error("E0101", path).says(std::string("cannot open: ") + std::strerror(errno));
   struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
     ::close(descriptor);
-    throw Error({ErrorKind::input,
-                 "E0101",
-                 path,
-                 "is a folder, a file was expected",
-                 "",
-                 "of folders those of rosbag2 are read, which have a metadata.yaml (ros2 bag "
-                 "reindex writes one)"});
+    throw input_error("E0101", path)
+        .says("is a folder, a file was expected")
+        .hint(
+            "of folders those of rosbag2 are read, which have a metadata.yaml (ros2 bag reindex "
+            "writes one)");
   }
   std::string bytes(4096, '\0');
   // Only of a regular file can the front be read twice.
@@ -67,12 +64,9 @@ const Format& packed_format(const std::string& path) {
   const Format* const text = find_format("csv");
   const Format* const named = format_by_suffix(path.substr(0, path.rfind('.')));
   if (named == nullptr || named == text) return *text;
-  throw Error({ErrorKind::input,
-               "E0330",
-               path,
-               fmt::format("compressed {} is not read, only compressed text is", named->about.name),
-               "",
-               "unpack it first: gunzip, unzstd or unxz"});
+  throw input_error("E0330", path)
+      .says("compressed {} is not read, only compressed text is", named->about.name)
+      .hint("unpack it first: gunzip, unzstd or unxz");
 }
 
 // A magic number decides before the name, and the name before what else the content looks like: a
@@ -81,14 +75,10 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
   if (options.format != "auto") {
     if (const Format* format = find_format(options.format)) return *format;
     const auto words = format_words();
-    throw Error(
-        {ErrorKind::usage,
-         "E0202",
-         path,
-         "unknown log format",
-         options.format,
-         fmt::format(
-             "use {} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back())});
+    throw usage_error("E0202", path)
+        .says("unknown log format")
+        .got(options.format)
+        .hint("use {} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
   }
   if (read_once(path)) {  // looking into a pipe takes from it
     for (const Format& format : formats())
@@ -103,13 +93,10 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
   for (const Format& format : formats())
     if (format.sniff != nullptr && format.sniff(path, front)) return format;
   const auto words = format_words();
-  throw Error({ErrorKind::input,
-               "E0102",
-               path,
-               "neither text nor an array file, and no sidecar describes it",
-               "",
-               fmt::format("`format` {}, or write FILE.json (docs: raw binary)",
-                           fmt::join(words.begin() + 1, words.end(), "|"))});
+  throw input_error("E0102", path)
+      .says("neither text nor an array file, and no sidecar describes it")
+      .hint("`format` {}, or write FILE.json (docs: raw binary)",
+            fmt::join(words.begin() + 1, words.end(), "|"));
 }
 
 std::unique_ptr<RowSource> open_log(const std::string& path, const ReadOptions& options) {
@@ -124,17 +111,14 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
     std::string read;
     for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 12); ++c)
       read += (c == 0 ? "" : ", ") + channels[c].name;
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 flag,
-                 fmt::format("{} given, and {} channel{} read: {}{}",
-                             count,
-                             channels.size(),
-                             channels.size() == 1 ? " is" : "s are",
-                             read,
-                             channels.size() > 12 ? ", …" : ""),
-                 "",
-                 "one for each channel that is read, in that order"});
+    throw usage_error("E0205", flag)
+        .says("{} given, and {} channel{} read: {}{}",
+              count,
+              channels.size(),
+              channels.size() == 1 ? " is" : "s are",
+              read,
+              channels.size() > 12 ? ", …" : "")
+        .hint("one for each channel that is read, in that order");
   };
   if (!options.names.empty() && options.names.size() != channels.size())
     refuse("`names`", options.names.size());
@@ -153,12 +137,10 @@ std::optional<std::string> value_for(const std::vector<std::string>& words,
   for (const std::string& word : words) {
     const std::size_t sign = word.rfind('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == word.size())
-      throw Error({ErrorKind::usage,
-                   "E0331",
-                   "",
-                   "expected NAME=VALUE for a channel",
-                   word,
-                   "such as `channel_scale` gx=1/16.4 or `channel_unit` 'gyro*=deg/s'"});
+      throw usage_error("E0331")
+          .says("expected NAME=VALUE for a channel")
+          .got(word)
+          .hint("such as `channel_scale` gx=1/16.4 or `channel_unit` 'gyro*=deg/s'");
     if (matches(word.substr(0, sign), channel)) found = word.substr(sign + 1);
   }
   return found;
@@ -176,17 +158,13 @@ double conversion(const std::string& stated, const Channel& channel) {
   if (alike && from->to_si == to->to_si) return 1;
   if (alike && from->quantity != Quantity::temperature && from->quantity != Quantity::concentration)
     return from->to_si / to->to_si;
-  throw Error(
-      {ErrorKind::usage,
-       "E0331",
-       "",
-       fmt::format("values of {} in {} are not converted to {}{}",
-                   printable(channel.name),
-                   printable(stated, 20),
-                   printable(channel.unit, 20),
-                   alike ? "" : ", a unit of another quantity"),
-       "",
-       fmt::format("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name)});
+  throw usage_error("E0331")
+      .says("values of {} in {} are not converted to {}{}",
+            printable(channel.name),
+            printable(stated, 20),
+            printable(channel.unit, 20),
+            alike ? "" : ", a unit of another quantity")
+      .hint("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name);
 }
 
 // Names and units as they are asked for; counts become values, by `channel_scale`, else by a number
@@ -210,12 +188,10 @@ std::vector<double> dress_channels(std::vector<Channel>& channels,
     if (const auto scale = value_for(options.channel_scale, channel.name)) {
       const auto factor = parse_factor(*scale);
       if (!factor)
-        throw Error({ErrorKind::usage,
-                     "E0331",
-                     "`channel_scale`",
-                     "the factor of a channel is no number other than 0",
-                     *scale,
-                     "such as 0.05 or 1/16.4"});
+        throw usage_error("E0331", "`channel_scale`")
+            .says("the factor of a channel is no number other than 0")
+            .got(*scale)
+            .hint("such as 0.05 or 1/16.4");
       factors[c] = *factor;
     } else if (!counts) {
       factors[c] = conversion(stated[c].unit, channel);
@@ -263,14 +239,11 @@ void warn_of_units(const ReadOptions& options, Findings& warnings) {
 }
 
 [[noreturn]] void refuse_empty(const LogInfo& info) {
-  throw Error({ErrorKind::input,
-               "E0318",
-               info.file,
-               info.channels.size() == 1
-                   ? fmt::format("column {} has no finite value", info.channels[0].name)
-                   : fmt::format("none of {} columns has a finite value", info.channels.size()),
-               "",
-               "`channels` chooses others"});
+  throw input_error("E0318", info.file)
+      .says(info.channels.size() == 1
+                ? fmt::format("column {} has no finite value", info.channels[0].name)
+                : fmt::format("none of {} columns has a finite value", info.channels.size()))
+      .hint("`channels` chooses others");
 }
 
 /// How the values of a channel stand among the first samples: one that is slower than the rows of its table
@@ -337,16 +310,12 @@ struct Watch final : BlockSink {
 
 void check_numbers(const ReadOptions& options) {
   if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "`rate_hz`",
-                 "the rate must be a positive number of hertz, from 1e-9 to 1e12",
-                 shortest(*options.rate_hz)});
+    throw usage_error("E0201", "`rate_hz`")
+        .says("the rate must be a positive number of hertz, from 1e-9 to 1e12")
+        .got(shortest(*options.rate_hz));
   if (options.from_s && options.to_s && !(*options.from_s < *options.to_s))
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "`to_s`",
-                 "the window is empty: `to_s` does not lie after `from_s`"});
+    throw usage_error("E0201", "`to_s`")
+        .says("the window is empty: `to_s` does not lie after `from_s`");
 }
 
 }  // namespace
@@ -398,14 +367,11 @@ void take_grid(const LogInfo& known, LogInfo& info) {
 }
 
 void refuse_without_samples(const LogInfo& info, const ReadOptions& options) {
-  if (info.rows == 0) throw Error({ErrorKind::input, "E0322", info.file, "no data rows"});
+  if (info.rows == 0) throw input_error("E0322", info.file).says("no data rows");
   if (info.samples == 0 && (options.from_s || options.to_s))
-    throw Error({ErrorKind::usage,
-                 "E0319",
-                 info.file,
-                 "the stretch of time that was chosen holds no sample",
-                 "",
-                 "inspect says how long the log is"});
+    throw usage_error("E0319", info.file)
+        .says("the stretch of time that was chosen holds no sample")
+        .hint("inspect says how long the log is");
 }
 
 /// Refuses a whole log without a finite value; warns of channels without one.
@@ -432,10 +398,6 @@ void judge_values(const Watch& watch,
         fmt::format("channel {}, every {} rows", info.channels[c].name, watch.presence[c].usual));
   }
 }
-
-}  // namespace
-
-namespace {
 
 /// The next rows, with what is marked as missing missing.
 bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, Findings& warnings) {
@@ -493,12 +455,9 @@ LogInfo read_rows(const std::string& path,
   if (why_not.empty() && !source->restrict_rows(first, end, channels))
     why_not = fmt::format("its rows have no fixed places ({})", source->info().format);
   if (!why_not.empty())
-    throw Error({ErrorKind::usage,
-                 "E0726",
-                 path,
-                 "cannot be read in stretches: " + why_not,
-                 "",
-                 "convert it to .npy first"});
+    throw usage_error("E0726", path)
+        .says("cannot be read in stretches: " + why_not)
+        .hint("convert it to .npy first");
   Findings warnings;
   Watch watch(sink, whole);
   TimeGrid grid(*source, whole, watch, warnings);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document/document_file.hpp"
-#include "libchar/core/document/finding_fields.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/log/binary/sidecar.hpp"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/detail/format.hpp"
 
 namespace libchar {
@@ -13,11 +13,7 @@ namespace {
 
 void check_word(const char* option, const std::string& got, const std::vector<std::string>& words) {
   if (std::find(words.begin(), words.end(), got) == words.end())
-    throw Error({ErrorKind::usage,
-                 "E0507",
-                 option,
-                 fmt::format("expected {}", fmt::join(words, " or ")),
-                 got});
+    throw usage_error("E0507", option).says("expected {}", fmt::join(words, " or ")).got(got);
 }
 
 // "a, b or c".
@@ -31,22 +27,17 @@ std::string listed(const std::vector<std::string>& words, const char* last) {
 const Format& format_to_write_of(const std::string& path, const WriteOptions& options) {
   if (options.format == "auto") {
     if (const Format* format = written_format_by_suffix(path)) return *format;
-    throw Error({ErrorKind::usage,
-                 "E0506",
-                 path,
-                 "the suffix does not say which format to write",
-                 "",
-                 fmt::format("end the name in one of {}, or name the format", written_suffixes())});
+    throw usage_error("E0506", path)
+        .says("the suffix does not say which format to write")
+        .hint("end the name in one of {}, or name the format", written_suffixes());
   }
   const Format* const format = find_format(options.format);
   if (format && format->write) return *format;
   std::vector<std::string> words = written_format_words();
   words.erase(words.begin());
-  throw Error({ErrorKind::usage,
-               "E0506",
-               path,
-               "no such format to write; " + listed(words, " and ") + " are written",
-               options.format});
+  throw usage_error("E0506", path)
+      .says("no such format to write; " + listed(words, " and ") + " are written")
+      .got(options.format);
 }
 
 }  // namespace
@@ -74,8 +65,7 @@ std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
                                            const WriteOptions& options) {
   check_word("`dtype`", options.dtype, {"f64", "f32"});
   check_word("`order`", options.order, {"interleaved", "planar"});
-  if (info.channels.empty())
-    throw Error({ErrorKind::usage, "E0508", path, "there is no channel to write"});
+  if (info.channels.empty()) throw usage_error("E0508", path).says("there is no channel to write");
   return format_to_write_of(path, options).write(path, info, options);
 }
 

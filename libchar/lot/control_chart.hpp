@@ -22,10 +22,7 @@ enum class ZoneRule : std::uint8_t {
 };
 template <>
 inline constexpr auto enum_table<ZoneRule> =
-    enum_words<ZoneRule>({{ZoneRule::beyond_3_sigma, "beyond_3_sigma"},
-                          {ZoneRule::two_of_three, "two_of_three"},
-                          {ZoneRule::four_of_five, "four_of_five"},
-                          {ZoneRule::eight_in_a_row, "eight_in_a_row"}});
+    enum_words<ZoneRule, "beyond_3_sigma two_of_three four_of_five eight_in_a_row">;
 inline constexpr std::size_t kZoneRules = enum_table<ZoneRule>.size();
 
 /// Signals that follow each other without a value between them are one.

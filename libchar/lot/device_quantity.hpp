@@ -24,16 +24,10 @@ enum class DeviceQuantity : std::uint8_t {
   temperature_coefficient,  ///< the linear one, at the mean temperature
 };
 template <>
-inline constexpr auto enum_table<DeviceQuantity> = enum_words<DeviceQuantity>(
-    {{DeviceQuantity::white_noise, "white_noise"},
-     {DeviceQuantity::bias_instability, "bias_instability"},
-     {DeviceQuantity::random_walk, "random_walk"},
-     {DeviceQuantity::quantization, "quantization"},
-     {DeviceQuantity::rate_ramp, "rate_ramp"},
-     {DeviceQuantity::gauss_markov_sigma, "gauss_markov_sigma"},
-     {DeviceQuantity::gauss_markov_time, "gauss_markov_time"},
-     {DeviceQuantity::turn_on_bias, "turn_on_bias"},
-     {DeviceQuantity::temperature_coefficient, "temperature_coefficient"}});
+inline constexpr auto enum_table<DeviceQuantity> =
+    enum_words<DeviceQuantity,
+               "white_noise bias_instability random_walk quantization rate_ramp gauss_markov_sigma "
+               "gauss_markov_time turn_on_bias temperature_coefficient">;
 inline constexpr std::size_t kDeviceQuantities = enum_table<DeviceQuantity>.size();
 
 DeviceQuantity quantity_of(Term term);

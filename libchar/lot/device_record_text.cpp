@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document/finding_fields.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/lot/detail/record_scanner.hpp"
 #include "libchar/lot/device_record.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/lot_statistics.hpp"
@@ -271,12 +271,9 @@ std::vector<std::string> warnings_note(std::span<const DeviceRecord> records,
 
 FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions& options) {
   if (records.empty())
-    throw Error({ErrorKind::usage,
-                 "E0752",
-                 "",
-                 "a lot needs at least one device record, there is none",
-                 "",
-                 "characterize the fleet's logs first"});
+    throw usage_error("E0752")
+        .says("a lot needs at least one device record, there is none")
+        .hint("characterize the fleet's logs first");
   const Fleet fleet = fleet_of(records, options);
   FleetLot out;
   out.devices = fleet.sorted.first.size();

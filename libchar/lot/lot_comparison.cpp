@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/lot_figures.hpp"
@@ -78,12 +78,9 @@ using Records = std::span<const DeviceRecord>;
 
 Fleet side_of(Records records, const std::string& name) {
   if (records.empty())
-    throw Error({ErrorKind::usage,
-                 "E0752",
-                 "",
-                 "a lot needs at least one device record, there is none in " + name,
-                 "",
-                 "characterize its logs first"});
+    throw usage_error("E0752")
+        .says("a lot needs at least one device record, there is none in " + name)
+        .hint("characterize its logs first");
   return fleet_of(records, {});
 }
 
@@ -327,15 +324,11 @@ FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& opt
     }
   }
   if (!common)
-    throw Error(
-        {ErrorKind::input,
-         "E0753",
-         "",
-         fmt::format("{} and {} have no channel of one type, name and kind of unit in common",
-                     options.name_a,
-                     options.name_b),
-         "",
-         "compare lots of one type of device"});
+    throw input_error("E0753")
+        .says("{} and {} have no channel of one type, name and kind of unit in common",
+              options.name_a,
+              options.name_b)
+        .hint("compare lots of one type of device");
   note_only(sa, sb, options.name_a, out);
   note_only(sb, sa, options.name_b, out);
   correct_for_all(out);

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "libchar/core/document/finding_fields.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/model/detail/noise_term.hpp"
 

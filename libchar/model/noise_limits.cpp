@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "libchar/core/document/document_file.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/document/document.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/model/detail/noise_term.hpp"
@@ -58,17 +58,8 @@ Row<LimitBlock> term_row() {
   return row;
 }
 
-[[noreturn]] void refuse_at(const NoiseLimits& limits,
-                            const Document& value,
-                            const std::string& what,
-                            const std::string& got,
-                            const std::string& hint) {
-  throw Error({ErrorKind::input,
-               "E0550",
-               fmt::format("{}:{}:{}", limits.file, value.line, value.column),
-               what,
-               got,
-               hint});
+Refusal at_refusal(const NoiseLimits& limits, const Document& value) {
+  return input_error("E0550", fmt::format("{}:{}:{}", limits.file, value.line, value.column));
 }
 
 std::vector<std::size_t> named_channels(const NoiseLimits& limits,
@@ -85,11 +76,10 @@ std::vector<std::size_t> named_channels(const NoiseLimits& limits,
       names.reserve(channels.size());
       for (const NamedChannel& c : channels) names.push_back(c.name);
       const auto near = nearest(block.channels[i], names);
-      refuse_at(limits,
-                list.kind == Document::Kind::list ? list.list[i] : list,
-                "the recording has no such channel",
-                block.channels[i],
-                did_you_mean(near, "its channels are " + first_names(names)));
+      throw at_refusal(limits, list.kind == Document::Kind::list ? list.list[i] : list)
+          .says("the recording has no such channel")
+          .got(block.channels[i])
+          .hint(did_you_mean(near, "its channels are " + first_names(names)));
     }
     out.push_back(static_cast<std::size_t>(at - channels.begin()));
   }
@@ -106,13 +96,11 @@ std::vector<std::size_t> channels_of(const NoiseLimits& limits,
     if (block.kind.empty() || (unit && name_of(unit->quantity) == block.kind)) out.push_back(i);
   }
   if (out.empty())
-    refuse_at(
-        limits,
-        block.node.find("kind") != nullptr ? block.node.find("kind")->value : block.node,
-        fmt::format("no channel of the recording is of the kind {}: limits of another sensor?",
-                    block.kind.empty() ? "asked for" : block.kind),
-        "",
-        "the kind follows from a channel's unit (`units` where the log has none)");
+    throw at_refusal(
+        limits, block.node.find("kind") != nullptr ? block.node.find("kind")->value : block.node)
+        .says("no channel of the recording is of the kind {}: limits of another sensor?",
+              block.kind.empty() ? "asked for" : block.kind)
+        .hint("the kind follows from a channel's unit (`units` where the log has none)");
   return out;
 }
 
@@ -138,14 +126,12 @@ void add_limits(const NoiseLimits& limits,
     const Term term = static_cast<Term>(t);
     for (const ChannelLimit& other : out)
       if (other.channel == index && other.term == term)
-        refuse_at(limits,
-                  entry->value,
-                  fmt::format("channel {} has a limit of {} already, in line {}",
-                              channel.name,
-                              entry->key,
-                              other.line),
-                  "",
-                  "leave one of the two out");
+        throw at_refusal(limits, entry->value)
+            .says("channel {} has a limit of {} already, in line {}",
+                  channel.name,
+                  entry->key,
+                  other.line)
+            .hint("leave one of the two out");
     // The rules for units and sides are those of sensor models.
     SensorModel model;
     model.unit = channel.unit;
@@ -199,17 +185,15 @@ NoiseLimits parse_limits(std::string_view text, const std::string& file) {
   read_fields(limits_fields(), at, limits);
   for (const LimitBlock& block : limits.blocks) {
     if (!block.channels.empty() && !block.kind.empty())
-      refuse_at(
-          limits, block.node.find("kind")->value, "channels and kind exclude each other", "", "");
+      throw at_refusal(limits, block.node.find("kind")->value)
+          .says("channels and kind exclude each other");
     if (std::none_of(kTermNames.begin(), kTermNames.end(), [&](const TermName& name) {
           const DocumentEntry* const entry = block.node.find(name.key);
           return entry != nullptr && entry->value.kind != Document::Kind::null;
         }))
-      refuse_at(limits,
-                block.node,
-                "a block of limits limits no noise term",
-                "",
-                "such as white_noise: {value: 0.3, unit: deg/√h}");
+      throw at_refusal(limits, block.node)
+          .says("a block of limits limits no noise term")
+          .hint("such as white_noise: {value: 0.3, unit: deg/√h}");
   }
   return limits;
 }

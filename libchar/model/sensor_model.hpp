@@ -15,12 +15,25 @@
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/document/enum_table.hpp"
 #include "libchar/core/finding.hpp"
-#include "libchar/core/gauss_markov.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/noise_shape.hpp"
 
 namespace libchar {
+
+/// A first-order Gauss-Markov (Ornstein-Uhlenbeck) process: standard deviation sigma, correlation time tau, two-sided
+/// density S(f) = 2 sigma² tau / (1 + (2 pi f tau)²). Sampled every dt it is
+/// y_t = phi y_{t-1} + sigma sqrt(1 - phi²) w_t, phi = exp(-dt/tau).
+/// What a simulation needs of it, and what is known of it.
+struct GaussMarkovNoise {
+  double sigma = 0;                ///< U; 0: there is none
+  double tau_s = 0;                ///< correlation time
+  std::vector<double> sigma_ci95;  ///< [low, high]; empty: not from a fit
+  std::vector<double> tau_ci95_s;  ///< [low, high], [low] when the record gives no upper end
+  Status status =
+      Status::detected;  ///< undetermined: noise terms alone may explain the record as well
+  bool operator==(const GaussMarkovNoise&) const = default;
+};
 
 /// Block 1: alpha = N(value, spread) * (1 + tc1 dT + tc2 dT^2), drawn once a device.
 struct ScaleFactor {
@@ -87,9 +100,7 @@ struct DeterministicTerm {
 };
 template <>
 inline constexpr auto enum_table<DeterministicTerm::Kind> =
-    enum_words<DeterministicTerm::Kind>({{DeterministicTerm::Kind::step, "step"},
-                                         {DeterministicTerm::Kind::warm_up, "warm-up"},
-                                         {DeterministicTerm::Kind::ramp, "ramp"}});
+    enum_words<DeterministicTerm::Kind, "step warm-up ramp">;
 
 struct SensorModel {
   std::string channel;

@@ -21,11 +21,11 @@ enum class Difference {
 
 template <>
 inline constexpr auto enum_table<Difference> =
-    enum_words<Difference>({{Difference::equal, "equal"},
-                            {Difference::not_resolved, "not resolved"},
-                            {Difference::better, "better"},
-                            {Difference::worse, "worse"},
-                            {Difference::unknown, "unknown"}});
+    std::to_array<EnumWord<Difference>>({{Difference::equal, "equal"},
+                                         {Difference::not_resolved, "not resolved"},
+                                         {Difference::better, "better"},
+                                         {Difference::worse, "worse"},
+                                         {Difference::unknown, "unknown"}});
 
 /// One label; a side that does not have it is null.
 struct ComparedAlgorithm {

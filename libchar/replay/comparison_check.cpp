@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
@@ -99,12 +99,9 @@ std::vector<std::string> failures(const Comparison& comparison, const Comparison
                  did_you_mean(near, "labels are those of the table"));
   }
   if (checked == 0)
-    throw Error({ErrorKind::check,
-                 "E0923",
-                 "`check`",
-                 fmt::format("A has no {} that B could be held against", metric.name),
-                 check.text,
-                 ""});
+    throw Refusal(ErrorKind::check, "E0923", "`check`")
+        .says("A has no {} that B could be held against", metric.name)
+        .got(check.text);
   return out;
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/distributions.hpp"

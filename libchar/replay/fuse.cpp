@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/term_cells.hpp"
@@ -25,15 +25,6 @@ namespace libchar {
 namespace {
 
 constexpr std::size_t kFusedBlock = 4096;
-
-[[noreturn]] void refuse_fuse(ErrorKind kind,
-                              const char* code,
-                              const std::string& where,
-                              const std::string& what,
-                              const std::string& got = "",
-                              const std::string& hint = "") {
-  throw Error({kind, code, where, what, got, hint});
-}
 
 // The channels of a log without its samples.
 std::vector<Channel> channels_of(const std::string& log, ReadOptions reading, Progress& progress) {
@@ -64,24 +55,19 @@ bool same_unit(const std::string& a, const std::string& b) {
 const LearntAlgorithm& algorithm_to_apply(const LearntFusion& learnt, const FuseOptions& options) {
   const std::string& label = options.algorithm.empty() ? learnt.recommended : options.algorithm;
   if (label.empty())
-    refuse_fuse(ErrorKind::usage,
-                "E0932",
-                learnt.file,
-                "the replay recommended no algorithm",
-                "",
-                "choose one with `algorithm`: " + first_names(learnt.labels()));
+    throw usage_error("E0932", learnt.file)
+        .says("the replay recommended no algorithm")
+        .hint("choose one with `algorithm`: " + first_names(learnt.labels()));
   const LearntAlgorithm* found = learnt.find(label);
   if (found == nullptr) {
     const auto near = nearest(label, learnt.labels());
-    refuse_fuse(ErrorKind::usage,
-                "E0932",
-                learnt.file,
-                "the replay ran no algorithm of this name",
-                label,
-                did_you_mean(near, "it ran " + first_names(learnt.labels())));
+    throw usage_error("E0932", learnt.file)
+        .says("the replay ran no algorithm of this name")
+        .got(label)
+        .hint(did_you_mean(near, "it ran " + first_names(learnt.labels())));
   }
   if (!found->refused.empty())
-    refuse_fuse(ErrorKind::usage, "E0933", learnt.file, found->refused, label);
+    throw usage_error("E0933", learnt.file).says(found->refused).got(label);
   return *found;
 }
 
@@ -97,12 +83,11 @@ class Fusing {
         progress_(progress),
         algorithm_(algorithm_to_apply(learnt, options)) {
     if (learnt.average_s)
-      refuse_fuse(ErrorKind::input,
-                  "E0934",
-                  learnt.file,
-                  "it was learnt on means over the intervals of a slow reference, which are not "
-                  "applied to a log yet",
-                  duration_text(*learnt.average_s));
+      throw input_error("E0934", learnt.file)
+          .says(
+              "it was learnt on means over the intervals of a slow reference, which are not "
+              "applied to a log yet")
+          .got(duration_text(*learnt.average_s));
     find_entry();
     find_channels();
     describe_scene();
@@ -171,12 +156,11 @@ class Fusing {
 void Fusing::find_entry() {
   entry_ = fusion::find_algorithm(algorithm_.name);
   if (entry_ == nullptr)
-    refuse_fuse(ErrorKind::input,
-                "E0930",
-                fmt::format("{}:{}:{}", learnt_.file, algorithm_.line, algorithm_.column),
-                "this program has no algorithm of this name",
-                algorithm_.name,
-                "sensorchar replay lists what there is");
+    throw input_error("E0930",
+                      fmt::format("{}:{}:{}", learnt_.file, algorithm_.line, algorithm_.column))
+        .says("this program has no algorithm of this name")
+        .got(algorithm_.name)
+        .hint("sensorchar replay lists what there is");
 }
 
 void Fusing::check_map() const {
@@ -185,12 +169,10 @@ void Fusing::check_map() const {
     for (const LearntSensor& known : learnt_.sensors) names.push_back(known.name);
     if (std::find(names.begin(), names.end(), sensor) != names.end()) continue;
     const auto near = nearest(sensor, names);
-    refuse_fuse(ErrorKind::usage,
-                "E0935",
-                "`map`",
-                fmt::format("{} has no sensor of this name", learnt_.file),
-                sensor,
-                did_you_mean(near, "it has " + first_names(names)));
+    throw usage_error("E0935", "`map`")
+        .says("{} has no sensor of this name", learnt_.file)
+        .got(sensor)
+        .hint(did_you_mean(near, "it has " + first_names(names)));
   }
 }
 
@@ -210,28 +192,24 @@ double Fusing::to_recorded(const LearntSensor& sensor, const Channel& channel) c
                       from->quantity != Quantity::temperature &&
                       from->quantity != Quantity::concentration;
   if (!scales)
-    refuse_fuse(ErrorKind::input,
-                "E0936",
-                log_,
-                fmt::format("channel {} is in another unit than that of sensor {}, {}",
-                            printable(channel.name, 40),
-                            printable(sensor.name, 40),
-                            sensor.recorded_unit),
-                unit,
-                "convert the log, or say with `units` what the channels are in");
+    throw input_error("E0936", log_)
+        .says("channel {} is in another unit than that of sensor {}, {}",
+              printable(channel.name, 40),
+              printable(sensor.name, 40),
+              sensor.recorded_unit)
+        .got(unit)
+        .hint("convert the log, or say with `units` what the channels are in");
   return from->to_si / to->to_si;
 }
 
 // A sensor that the log does not have.
 void Fusing::without(const std::string& sensor) {
   if (!entry_->description->needs.accepts_missing)
-    refuse_fuse(ErrorKind::input,
-                "E0937",
-                log_,
-                fmt::format("the log has no channel for this sensor, and {} cannot run without it",
-                            algorithm_.label),
-                sensor,
-                "name its column with `map`, or choose another algorithm");
+    throw input_error("E0937", log_)
+        .says("the log has no channel for this sensor, and {} cannot run without it",
+              algorithm_.label)
+        .got(sensor)
+        .hint("name its column with `map`, or choose another algorithm");
   result_.warnings.add(
       "sensor_not_in_log", "the log does not have these sensors: fused without them", sensor);
 }
@@ -262,25 +240,21 @@ void Fusing::find_channels() {
       present_.push_back(i);
     } else if (channel != sensor.channel) {
       const auto near = nearest(channel, names);
-      refuse_fuse(ErrorKind::usage,
-                  "E0935",
-                  "`map`",
-                  fmt::format("{} has no channel of this name", log_),
-                  channel,
-                  did_you_mean(near, "it has " + first_names(names)));
+      throw usage_error("E0935", "`map`")
+          .says("{} has no channel of this name", log_)
+          .got(channel)
+          .hint(did_you_mean(near, "it has " + first_names(names)));
     }
   }
   if (present_.empty())
-    refuse_fuse(ErrorKind::input,
-                "E0937",
-                log_,
-                "the log has none of the channels that the sensors had where this was learnt",
-                first_names(names),
-                "name them with `map`: SENSOR=CHANNEL; the sensors are " + first_names([&] {
-                  std::vector<std::string> out;
-                  for (const LearntSensor& s : learnt_.sensors) out.push_back(s.name);
-                  return out;
-                }()));
+    throw input_error("E0937", log_)
+        .says("the log has none of the channels that the sensors had where this was learnt")
+        .got(first_names(names))
+        .hint("name them with `map`: SENSOR=CHANNEL; the sensors are " + first_names([&] {
+                std::vector<std::string> out;
+                for (const LearntSensor& s : learnt_.sensors) out.push_back(s.name);
+                return out;
+              }()));
   for (std::size_t i = 0; i < learnt_.sensors.size(); ++i)
     if (result_.sensors[i].channel.empty() && !learnt_.sensors[i].left_out)
       without(learnt_.sensors[i].name);
@@ -315,12 +289,9 @@ void Fusing::describe_scene() {
     scene_.sensors.push_back(std::move(sensor));
   }
   if (tilt && present_.size() < learnt_.sensors.size())
-    refuse_fuse(ErrorKind::input,
-                "E0937",
-                log_,
-                "a tilt needs its gyroscope and both accelerometer axes",
-                "",
-                "name their columns with `map`");
+    throw input_error("E0937", log_)
+        .says("a tilt needs its gyroscope and both accelerometer axes")
+        .hint("name their columns with `map`");
 }
 
 // How the rates compare, once the log's is known.
@@ -328,16 +299,14 @@ void Fusing::check_rate() {
   const double ratio = instants_->info().rate_hz / learnt_.rate_hz;
   if (std::abs(ratio - 1) <= fusion::kSameRate) return;
   if (entry_->description->needs.noise_models)
-    refuse_fuse(ErrorKind::input,
-                "E0867",
-                log_,
-                fmt::format("the log's rate is {} times that of the log where this was learnt: the "
-                            "noise of a sample, which {} weighs against the drifts, is not known "
-                            "there",
-                            brief_text(ratio, 4),
-                            algorithm_.label),
-                fmt::format("{} Hz", brief_text(instants_->info().rate_hz, 6)),
-                "learn on a log of this rate, or choose another algorithm");
+    throw input_error("E0867", log_)
+        .says(
+            "the log's rate is {} times that of the log where this was learnt: the noise of a "
+            "sample, which {} weighs against the drifts, is not known there",
+            brief_text(ratio, 4),
+            algorithm_.label)
+        .got("{} Hz", brief_text(instants_->info().rate_hz, 6))
+        .hint("learn on a log of this rate, or choose another algorithm");
   result_.warnings.add("another_rate",
                        "the log's rate is not that of the log where this was learnt: delays and "
                        "times are kept, what counts samples (memories, noise of a sample) is not",
@@ -376,12 +345,9 @@ void Fusing::prepare_instants() {
     alignment_ = alignment_of(learnt_, present_, instants_->info().rate_hz);
     for (const fusion::ChannelAlignment& channel : alignment_.alignment.channels)
       if (std::abs(channel.delay) > fusion::kMostDelay)
-        refuse_fuse(ErrorKind::input,
-                    "E0867",
-                    log_,
-                    fmt::format("at this rate a sensor's delay is more than {} samples",
-                                fusion::kMostDelay),
-                    brief_text(channel.delay, 4));
+        throw input_error("E0867", log_)
+            .says("at this rate a sensor's delay is more than {} samples", fusion::kMostDelay)
+            .got(brief_text(channel.delay, 4));
     instants_->set_alignment(&alignment_);
   }
   if (const std::string& unit = learnt_.inputs[0].unit; scene_.tilt)
@@ -396,13 +362,10 @@ void Fusing::make_runner() {
   array.fault_free_samples =
       std::clamp<std::int64_t>(std::llround(fault_free_s() * info.rate_hz), 0, info.count);
   if (entry_->description->needs.fault_free_start && array.fault_free_samples == 0)
-    refuse_fuse(ErrorKind::usage,
-                "E0934",
-                "`fault_free_s`",
-                fmt::format("{} learns its thresholds at the start of a log, where no sensor fails",
-                            algorithm_.label),
-                "",
-                "say how long that is in this log, or choose another algorithm");
+    throw usage_error("E0934", "`fault_free_s`")
+        .says("{} learns its thresholds at the start of a log, where no sensor fails",
+              algorithm_.label)
+        .hint("say how long that is in this log, or choose another algorithm");
   for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) {
     row_.push_back(learnt_.sensors[i].left_out ? -1 : std::ssize(sensor_of_));
     if (!learnt_.sensors[i].left_out) sensor_of_.push_back(i);
@@ -600,19 +563,13 @@ FuseResult fuse(const std::string& log,
                 const FuseOptions& options,
                 Progress& progress) {
   if (read_once(log))
-    refuse_fuse(ErrorKind::usage,
-                "E0934",
-                log,
-                "a log is read twice, for its rate and for its samples: it must be a file",
-                "",
-                "write what the pipe holds to a file first");
+    throw usage_error("E0934", log)
+        .says("a log is read twice, for its rate and for its samples: it must be a file")
+        .hint("write what the pipe holds to a file first");
   if (!options.reading.channels.empty())
-    refuse_fuse(ErrorKind::usage,
-                "E0934",
-                "`channels`",
-                "the file names the channels that are read",
-                "",
-                "where they have other names say so with `map`: SENSOR=CHANNEL");
+    throw usage_error("E0934", "`channels`")
+        .says("the file names the channels that are read")
+        .hint("where they have other names say so with `map`: SENSOR=CHANNEL");
   return Fusing(log, learnt, options, progress).run(sink);
 }
 

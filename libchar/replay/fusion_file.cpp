@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
-#include "libchar/core/document/document_file.hpp"
-#include "libchar/core/document/finding_fields.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 
 namespace libchar {
@@ -128,42 +127,36 @@ class FileCheck {
   }
 
  private:
-  [[noreturn]] void refuse(const char* list,
-                           std::size_t index,
-                           const std::string& what,
-                           const std::string& hint = "") const {
-    throw Error({ErrorKind::input,
-                 "E0930",
-                 top_.where(top_.list(list)[index]),
-                 fmt::format("{}[{}]: {}", list, index, what),
-                 "",
-                 hint});
+  Refusal refusal(const char* list, std::size_t index) const {
+    return input_error("E0930", top_.where(top_.list(list)[index]))
+        .about(fmt::format("{}[{}]", list, index));
   }
 
   void sensor(std::size_t i) const {
     const LearntSensor& s = learnt_.sensors[i];
     for (std::size_t j = 0; j < i; ++j)
       if (learnt_.sensors[j].name == s.name)
-        refuse("sensors", i, fmt::format("two sensors have the name {}", printable(s.name, 40)));
-    if (s.scale == 0) refuse("sensors", i, "a scale of zero leaves nothing of the samples");
+        throw refusal("sensors", i).says("two sensors have the name {}", printable(s.name, 40));
+    if (s.scale == 0)
+      throw refusal("sensors", i).says("a scale of zero leaves nothing of the samples");
     if (!tilted() && s.h.size() != learnt_.inputs.size())
-      refuse(
-          "sensors",
-          i,
-          fmt::format(
-              "h: expected {} weights, one an input, found {}", learnt_.inputs.size(), s.h.size()));
+      throw refusal("sensors", i)
+          .says(
+              "h: expected {} weights, one an input, found {}", learnt_.inputs.size(), s.h.size());
     if (s.flicker.has_value() != s.walk.has_value() ||
         s.gauss_markov_sigma.size() != s.gauss_markov_tau_s.size())
-      refuse("sensors",
-             i,
-             "a noise model has flicker and walk, and a gauss_markov_tau_s for each "
-             "gauss_markov_sigma");
+      throw refusal("sensors", i)
+          .says(
+              "a noise model has flicker and walk, and a gauss_markov_tau_s for each "
+              "gauss_markov_sigma");
     for (const auto* limits : {&s.alignment.low, &s.alignment.high})
       if (!limits->empty() && limits->size() != 1 + s.cross.size())
-        refuse("sensors", i, "alignment: a limit of the sensor and of each of its further axes");
+        throw refusal("sensors", i)
+            .says("alignment: a limit of the sensor and of each of its further axes");
     if (s.cross.size() != learnt_.sensors[0].cross.size() ||
         (!s.alignment.cross.empty() && s.alignment.cross.size() != s.cross.size()))
-      refuse("sensors", i, "all sensors name as many further axes, and share in as many");
+      throw refusal("sensors", i)
+          .says("all sensors name as many further axes, and share in as many");
   }
 
   bool tilted() const { return !learnt_.tilt.gyroscope.empty(); }
@@ -180,7 +173,7 @@ class FileCheck {
   void algorithm(std::size_t k) const {
     for (std::size_t j = 0; j < k; ++j)
       if (learnt_.algorithms[j].label == learnt_.algorithms[k].label)
-        refuse("algorithms", k, "two algorithms have this label");
+        throw refusal("algorithms", k).says("two algorithms have this label");
   }
 
   const MapReader& top_;
@@ -376,12 +369,9 @@ LearntFusion read_fusion_file(const std::string& path) {
   refuse_interrupted(path);
   const std::string inside = (fs::path(path) / "fusion.yaml").string();
   if (fs::status(inside, ignored).type() == fs::file_type::not_found)
-    throw Error({ErrorKind::input,
-                 "E0931",
-                 path,
-                 "the folder holds no fusion.yaml of a replay",
-                 "",
-                 "sensorchar replay SCENE -o DIR writes one"});
+    throw input_error("E0931", path)
+        .says("the folder holds no fusion.yaml of a replay")
+        .hint("sensorchar replay SCENE -o DIR writes one");
   return parse_fusion_file(read_document_text(inside), inside);
 }
 

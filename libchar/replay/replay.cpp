@@ -8,18 +8,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/work.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/replay/detail/algorithm_run.hpp"
 #include "libchar/replay/detail/align/alignment_stage.hpp"
-#include "libchar/replay/detail/align/find_lag.hpp"
-#include "libchar/replay/detail/align/find_offset.hpp"
+#include "libchar/replay/detail/align/lag.hpp"
 #include "libchar/replay/detail/blind_run.hpp"
-#include "libchar/replay/detail/detection_sweep.hpp"
 #include "libchar/replay/detail/judgement.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/partial_scores.hpp"
@@ -29,7 +26,6 @@
 #include "libchar/replay/detail/plan/plan_sentences.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/detail/tracks/run_tracks.hpp"
-#include "libchar/replay/view/preparation_words.hpp"
 #include "libchar/replay/view/ranking.hpp"
 
 namespace libchar {
@@ -525,14 +521,12 @@ void Replay::add_tracks(ReplayResult& out) const {
 void Replay::refuse_sizes() const {
   if (!beyond_ && (largest_ == 0 || largest_ >= 1 / fusion::kLargestSample)) return;
   if (beyond_ && largest_ > 0) return;
-  throw Error(
-      {ErrorKind::input,
-       "E0909",
-       scene_.file,
-       "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of that "
-       "size cannot be squared",
-       beyond_ ? "beyond 1e100" : brief_text(largest_, 3),
-       "give the sensors a `scale` and a `unit`"});
+  throw input_error("E0909", scene_.file)
+      .says(
+          "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of "
+          "that size cannot be squared")
+      .got(beyond_ ? "beyond 1e100" : brief_text(largest_, 3))
+      .hint("give the sensors a `scale` and a `unit`");
 }
 
 ReplayResult Replay::collect() {
@@ -540,12 +534,9 @@ ReplayResult Replay::collect() {
   for (const std::int64_t start : plan_.array.section_starts)
     scoring.sections.push_back(start - plan_.warm_up);  // scores begin behind it
   if (instants_.info().has_reference && truths_ == 0)
-    throw Error({ErrorKind::input,
-                 "E0902",
-                 scene_.file,
-                 "the reference has no value within the evaluation",
-                 "",
-                 "its stamps, its lag or its gaps put it elsewhere"});
+    throw input_error("E0902", scene_.file)
+        .says("the reference has no value within the evaluation")
+        .hint("its stamps, its lag or its gaps put it elsewhere");
   refuse_sizes();
   ReplayResult out;
   add_facts(out);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/fusion/registry.hpp"
@@ -15,14 +15,12 @@ namespace {
 
 constexpr std::size_t kRangeValues = 12;
 
-[[noreturn]] void refuse_sweep(const std::string& where, const std::string& text) {
-  throw Error({ErrorKind::usage,
-               "E0963",
-               where,
-               "expected ALGORITHM.OPTION=NUMBER, or where several are taken NUMBER,NUMBER… or "
-               "FROM..TO of whole numbers",
-               text,
-               where + " minque.gamma=0.99"});
+Refusal sweep_refusal(const std::string& where) {
+  return usage_error("E0963", where)
+      .says(
+          "expected ALGORITHM.OPTION=NUMBER, or where several are taken NUMBER,NUMBER… or FROM..TO "
+          "of whole numbers")
+      .hint(where + " minque.gamma=0.99");
 }
 
 bool is_whole(double value) {
@@ -50,13 +48,13 @@ std::vector<double> values_in(const std::string& list,
   std::vector<double> out;
   if (list.find("..") != std::string::npos) {
     const Interval range = parse_range(list, RangeOf::number, where);
-    if (!is_whole(range.low) || !is_whole(range.high)) refuse_sweep(where, text);
+    if (!is_whole(range.low) || !is_whole(range.high)) throw sweep_refusal(where).got(text);
     return range_values(range.low, range.high);
   }
   for (std::size_t at = 0; at <= list.size();) {
     const std::size_t comma = std::min(list.find(',', at), list.size());
     const auto value = parse_double(list.substr(at, comma - at));
-    if (!value) refuse_sweep(where, text);
+    if (!value) throw sweep_refusal(where).got(text);
     out.push_back(*value);
     at = comma + 1;
   }
@@ -73,11 +71,11 @@ SceneAlgorithm with_option(SceneAlgorithm algorithm, const std::string& option, 
 
 Sweep parse_sweep(const std::string& text, const std::string& where, std::size_t most) {
   const std::size_t equals = text.find('='), dot = text.rfind('.', equals);
-  if (equals == std::string::npos || dot == std::string::npos) refuse_sweep(where, text);
+  if (equals == std::string::npos || dot == std::string::npos) throw sweep_refusal(where).got(text);
   Sweep out{text.substr(0, dot),
             text.substr(dot + 1, equals - dot - 1),
             values_in(text.substr(equals + 1), where, text)};
-  if (out.values.size() > most) refuse_sweep(where, text);
+  if (out.values.size() > most) throw sweep_refusal(where).got(text);
   fusion::Settings settings(fusion::algorithm(out.algorithm).options);
   for (const double value : out.values) settings.set(out.option, value);
   return out;

@@ -7,8 +7,8 @@
 #include "libchar/core/file/file_name.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/html/html_report.hpp"
-#include "libchar/report/json/csv_curves.hpp"
 #include "libchar/report/json/json_report.hpp"
+#include "libchar/report/text/curves_text.hpp"
 
 namespace libchar {
 

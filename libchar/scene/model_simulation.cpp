@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <set>
 
-#include "libchar/core/error.hpp"
-#include "libchar/model/model_reader.hpp"
+#include "libchar/core/refusal.hpp"
+#include "libchar/model/model_file.hpp"
 
 namespace libchar {
 namespace {
@@ -40,14 +40,10 @@ ArraySimulation simulation_of_models(const std::vector<std::string>& model_files
     const SensorModel model = read_model_file(path);
     if (simulation.rate_hz == 0) simulation.rate_hz = model.rate_hz;
     if (!options.rate_hz && model.rate_hz != simulation.rate_hz)
-      throw Error({ErrorKind::usage,
-                   "E0721",
-                   path,
-                   fmt::format("is a model at {} Hz and the one before at {} Hz",
-                               model.rate_hz,
-                               simulation.rate_hz),
-                   "",
-                   "give one `rate_hz` for all"});
+      throw usage_error("E0721", path)
+          .says(
+              "is a model at {} Hz and the one before at {} Hz", model.rate_hz, simulation.rate_hz)
+          .hint("give one `rate_hz` for all");
     add_devices(simulation, model, name_of_sensor(model, path), options.devices);
   }
   if (options.rate_hz) simulation.rate_hz = *options.rate_hz;

@@ -7,14 +7,14 @@
 #include <filesystem>
 #include <set>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_name.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
-#include "libchar/model/model_reader.hpp"
+#include "libchar/model/model_file.hpp"
 
 namespace libchar {
 namespace {
@@ -22,13 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kNamesShown = 24;
-
-[[noreturn]] void refuse_words(const std::string& where,
-                               const std::string& what,
-                               const std::string& got = "",
-                               const std::string& hint = "") {
-  throw Error({ErrorKind::usage, "E0749", where, what, got, hint});
-}
 
 std::string list_of(const std::vector<std::string>& names) {
   const std::size_t shown = std::min(names.size(), kNamesShown);
@@ -44,12 +37,11 @@ std::string list_of(const std::vector<std::string>& names) {
   head.units.clear();
   std::vector<std::string> names;
   for (const Channel& channel : read_log_head(r.file, head).channels) names.push_back(channel.name);
-  refuse_words("`sensors`",
-               "which channels measure one quantity?",
-               "",
-               fmt::format("{} has {}; patterns such as 'gyro*' name several",
-                           printable(r.file),
-                           printable(list_of(names))));
+  throw usage_error("E0749", "`sensors`")
+      .says("which channels measure one quantity?")
+      .hint("{} has {}; patterns such as 'gyro*' name several",
+            printable(r.file),
+            printable(list_of(names)));
 }
 
 std::vector<std::string> together(const std::vector<std::vector<std::string>>& parts,
@@ -58,7 +50,8 @@ std::vector<std::string> together(const std::vector<std::vector<std::string>>& p
   std::set<std::string> seen;
   for (const auto& part : parts)
     for (const std::string& name : part) {
-      if (!seen.insert(name).second) refuse_words(option, "a channel is named twice", name);
+      if (!seen.insert(name).second)
+        throw usage_error("E0749", option).says("a channel is named twice").got(name);
       out.push_back(name);
     }
   return out;
@@ -88,16 +81,16 @@ Chosen choose_columns(const SensorRecording& r) {
           r.file, r.reading, r.sensors, own_log ? std::vector<std::string>{} : out.reference),
       "`sensors`");
   if (out.sensors.size() > kMostSensors)
-    refuse_words("`sensors`",
-                 fmt::format("{} sensors are more than the {} that a scene may have",
-                             out.sensors.size(),
-                             kMostSensors));
+    throw usage_error("E0749", "`sensors`")
+        .says("{} sensors are more than the {} that a scene may have",
+              out.sensors.size(),
+              kMostSensors);
   for (const std::string& name : out.reference)
     if (!own_log && std::find(out.sensors.begin(), out.sensors.end(), name) != out.sensors.end())
-      refuse_words("`reference`",
-                   "the reference is one of the sensors: its own error would be hidden",
-                   name,
-                   "name sensors and reference apart");
+      throw usage_error("E0749", "`reference`")
+          .says("the reference is one of the sensors: its own error would be hidden")
+          .got(name)
+          .hint("name sensors and reference apart");
   return out;
 }
 
@@ -124,15 +117,15 @@ void check_units(const SensorRecording& r, const Chosen& chosen) {
   std::erase_if(all, [](const Channel& channel) { return channel.unit.empty(); });
   for (const Channel& channel : all)
     if (!same_unit(all[0].unit, channel.unit))
-      refuse_words(r.file,
-                   fmt::format("{} is in {}, and {} in {}: they are not one quantity in one unit",
-                               printable(all[0].name, 40),
-                               printable(all[0].unit, 40),
-                               printable(channel.name, 40),
-                               printable(channel.unit, 40)),
-                   "",
-                   "choose others with `sensors`, say what they are in with `units`, or give each "
-                   "a scale and a unit in a scene file");
+      throw usage_error("E0749", r.file)
+          .says("{} is in {}, and {} in {}: they are not one quantity in one unit",
+                printable(all[0].name, 40),
+                printable(all[0].unit, 40),
+                printable(channel.name, 40),
+                printable(channel.unit, 40))
+          .hint(
+              "choose others with `sensors`, say what they are in with `units`, or give each a "
+              "scale and a unit in a scene file");
 }
 
 void add_model(SceneSensor& sensor, const std::string& file, Scene& scene) {
@@ -149,10 +142,10 @@ void add_models(const SensorRecording& r, Scene& scene) {
           fs::path(r.models_folder) / (file_name_for(sensor.name) + ".sensor.yaml");
       std::error_code ignored;  // what is there and cannot be looked at is told when it is opened
       if (fs::status(file, ignored).type() == fs::file_type::not_found)
-        refuse_words("`models`",
-                     fmt::format("there is no model of sensor {}", printable(sensor.name, 40)),
-                     file.string(),
-                     "characterize writes one for each channel into its folder");
+        throw usage_error("E0749", "`models`")
+            .says("there is no model of sensor {}", printable(sensor.name, 40))
+            .got(file.string())
+            .hint("characterize writes one for each channel into its folder");
       add_model(sensor, file.string(), scene);
     }
   }
@@ -161,7 +154,9 @@ void add_models(const SensorRecording& r, Scene& scene) {
                                      scene.sensors.end(),
                                      [&name = name](const auto& s) { return s.name == name; });
     if (sensor == scene.sensors.end())
-      refuse_words("`model`", "there is no sensor of this name among those chosen", name);
+      throw usage_error("E0749", "`model`")
+          .says("there is no sensor of this name among those chosen")
+          .got(name);
     add_model(*sensor, file, scene);
   }
 }
@@ -170,13 +165,14 @@ void add_models(const SensorRecording& r, Scene& scene) {
 
 Scene scene_from_recording(const SensorRecording& r) {
   if (read_once(r.file))
-    refuse_words(r.file,
-                 "a replay reads its recording several times, and this can be read once only",
-                 "",
-                 "save it in a file");
+    throw usage_error("E0749", r.file)
+        .says("a replay reads its recording several times, and this can be read once only")
+        .hint("save it in a file");
   if (r.sensors.empty()) ask_for_sensors(r);
   if (r.reference.empty() && !r.reference_file.empty())
-    refuse_words("`reference_log`", "which of its channels is the reference?", r.reference_file);
+    throw usage_error("E0749", "`reference_log`")
+        .says("which of its channels is the reference?")
+        .got(r.reference_file);
   const Chosen chosen = choose_columns(r);
   check_units(r, chosen);
   Scene scene;

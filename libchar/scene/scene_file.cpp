@@ -1,19 +1,21 @@
 #include "libchar/scene/scene_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 #include "libchar/core/document/document.hpp"
-#include "libchar/core/document/document_file.hpp"
 #include "libchar/core/document/fields.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/read.hpp"
@@ -21,10 +23,181 @@
 #include "libchar/scene/detail/scene_parts.hpp"
 #include "libchar/scene/detail/scene_sensors.hpp"
 #include "libchar/scene/detail/scene_simulation.hpp"
-#include "libchar/scene/detail/scene_times.hpp"
+#include "libchar/scene/detail/scene_values.hpp"
+#include "libchar/scene/text/preparation_check.hpp"
 
 namespace libchar {
 namespace {
+
+// The windows and faults of a scene file.
+
+void check_align_terms(const MapReader& at, const SceneAlign& align) {
+  for (const std::string& term : align.terms)
+    if (std::find(std::begin(kAlignTerms), std::end(kAlignTerms), term) == std::end(kAlignTerms))
+      throw scene_refusal("E0748", at, "terms")
+          .says("{} is no term of an alignment", printable(term, 40))
+          .hint("there are {}", fmt::join(kAlignTerms, ", "));
+}
+
+SceneAlign align_of(const MapReader& top, const Scene& scene) {
+  const MapReader at = top.map("align", keys_of(align_fields()));
+  SceneAlign align;
+  read_fields(align_fields(), at, align);
+  check_align_terms(at, align);
+  if (!at.has("learn")) {
+    align.learn = scene.learning ? "learning" : "run";
+  } else if (at.require("learn").kind == Document::Kind::list) {
+    align.window = window_of(at, "learn");
+  } else {
+    align.learn = at.word("learn", {"rest", "learning", "run"});
+    if ((align.learn == "rest" && !scene.rest) || (align.learn == "learning" && !scene.learning))
+      throw scene_refusal("E0748", at, "learn")
+          .says("the scene has no such window")
+          .hint("learn: [from, to], or the window's own key");
+  }
+  if (align.by == "reference" && !scene.reference)
+    throw scene_refusal("E0748", at, "by").says("the scene has no reference").hint("by: sensors");
+  if (scene.tilt)
+    throw scene_refusal("E0748", top, "align")
+        .says("the sensors of a tilt measure different quantities");
+  return align;
+}
+
+void check_preparation(const MapReader& top, const Scene& scene) {
+  const ScenePreparation& p = scene.preparation;
+  if (top.has("band_hz") && top.has("high_pass_hz"))
+    throw scene_refusal("E0735", top, "high_pass_hz")
+        .says("band_hz has a high-pass already")
+        .hint("give one of them");
+  const char* key = p.to_hz != 0          ? "band_hz"
+                    : p.filters()         ? "high_pass_hz"
+                    : p.detrend != "none" ? "detrend"
+                                          : "reference";
+  if (const std::string why = why_not_prepared(scene); !why.empty())
+    throw scene_refusal("E0750", top, key).says(why);
+}
+
+// Either every sensor names as many other axes, or none does.
+void check_cross(const MapReader& top, const SensorIndex& index, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+    if (scene.sensors[i].cross.size() != scene.sensors[0].cross.size())
+      throw scene_refusal_at("E0748", top, *index.places[i].node, index.places[i].path)
+          .says("sensor {} names {} other axes, and the first one {}",
+                printable(scene.sensors[i].name, 40),
+                scene.sensors[i].cross.size(),
+                scene.sensors[0].cross.size())
+          .hint("cross: the same axes of each device, in one order");
+}
+
+SensorFault fault_of(const MapReader& at, const Scene& scene, const SensorIndex& index) {
+  SensorFault fault;
+  fault.sensor = sensor_index(at, "sensor", scene, index);
+  FaultText text;
+  read_fields(fault_fields(), at, text);
+  fault.kind = text.kind;
+  const bool valueless = is_valueless(fault.kind);
+  if (valueless && at.has("value"))
+    throw scene_refusal("E0739", at, "value")
+        .says("a fault of kind {} has no value", name_of(fault.kind));
+  const bool size = fault.kind == FaultKind::noise || fault.kind == FaultKind::saturation;
+  if (!valueless) fault.value = at.number("value", size ? kNotNegative : kAnyNumber);
+  fault.from_s = text.from_s;
+  if (text.to_s) fault.to_s = *text.to_s;
+  if (!(fault.from_s < fault.to_s))
+    throw scene_refusal("E0740", at, "to_s").says("a fault lasts from a time to a later one");
+  return fault;
+}
+
+std::vector<SensorFault> faults_of(const MapReader& from,
+                                   const Scene& scene,
+                                   const SensorIndex& index) {
+  std::vector<SensorFault> out;
+  if (!from.has("faults")) return out;
+  const auto& list = from.list("faults");
+  for (std::size_t i = 0; i < list.size(); ++i)
+    out.push_back(fault_of(MapReader(list[i],
+                                     from.file(),
+                                     fmt::format("{}[{}]", from.path_of("faults"), i),
+                                     keys_of(fault_fields())),
+                           scene,
+                           index));
+  return out;
+}
+
+// Is a true input, or the temperature, read from a log?
+bool has_recorded_signal(const Document& node) {
+  const DocumentEntry* kind = node.find("kind");
+  if (kind != nullptr && kind->value.text == "recording") return true;
+  return std::any_of(node.list.begin(), node.list.end(), has_recorded_signal) ||
+         std::any_of(node.map.begin(), node.map.end(), [](const DocumentEntry& entry) {
+           return has_recorded_signal(entry.value);
+         });
+}
+
+// The simulation that `simulate` began with: the same sensors and faults, and its own rows h.
+std::optional<ArraySimulation> simulation_again(const MapReader& at,
+                                                const SimulatedFrom& from,
+                                                const SceneFolder& folder,
+                                                Scene& scene) {
+  if (!folder.may_be_absent && has_recorded_signal(at.require("simulate"))) return std::nullopt;
+  SceneFolder files = folder;
+  files.may_be_absent = false;
+  ArraySimulation out = scene_simulation_of(at, files, scene);
+  out.seed = from.seed;
+  out.oversampling = from.oversampling;
+  out.deterministic = from.deterministic;
+  out.faults = from.faults;
+  const std::size_t inputs = out.truth.size();
+  if (!from.rows.empty() && from.rows.size() != inputs * scene.sensors.size())
+    throw scene_refusal("E0741", at, "rows")
+        .says("expected {} weights, one a sensor and true input, found {}",
+              inputs * scene.sensors.size(),
+              from.rows.size());
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    const SceneSensor& sensor = scene.sensors[i];
+    out.sensors.push_back({sensor.name, sensor.model.value_or(SensorModel{}), sensor.h});
+    if (!from.rows.empty())
+      out.sensors[i].h.assign(from.rows.begin() + static_cast<std::ptrdiff_t>(i * inputs),
+                              from.rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * inputs));
+  }
+  try {
+    check(out);
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    problem.where = at.where(at.require("simulate"));
+    throw Error(problem);
+  }
+  return out;
+}
+
+SimulatedFrom simulated_of(const MapReader& top,
+                           const SceneFolder& folder,
+                           Scene& scene,
+                           const SensorIndex& index) {
+  if (scene.simulate)
+    throw scene_refusal("E0735", top, "simulated")
+        .says("tells what a recording holds; this scene has none");
+  const MapReader at = top.map("simulated", keys_of(simulated_fields()));
+  SimulatedFrom from;
+  read_fields(simulated_fields(), at, from);
+  check_oversampling(at, from.oversampling);
+  from.faults = faults_of(at, scene, index);
+  if (at.has("simulate")) from.simulation = simulation_again(at, from, folder, scene);
+  return from;
+}
+
+/// The blocks `learning`, `evaluation`, `rest`, `fault_free_s`, `faults` and `simulated`.
+void read_scene_times(const MapReader& top,
+                      const SceneFolder& folder,
+                      const SensorIndex& index,
+                      Scene& scene) {
+  read_fields(scene_time_fields(), top, scene);
+  scene.faults = faults_of(top, scene, index);
+  check_cross(top, index, scene);
+  check_preparation(top, scene);
+  if (top.has("align")) scene.align = align_of(top, scene);
+  if (top.has("simulated")) scene.simulated = simulated_of(top, folder, scene, index);
+}
 
 // The blocks `reference` and `tilt` of a scene file.
 // The blocks `reference` and `tilt` of a scene file, and the rows h that they go with.
@@ -37,7 +210,7 @@ void read_options(const MapReader& at,
     if (scene.simulate && key != "channels" && at.has(key))
       at.refuse(key, "a simulation knows its truth: name truth signals only");
   if (at.has("lag_s") && at.has("delay"))
-    refuse_scene("E0735", at, "delay", "lag_s says the same", "give one of them");
+    throw scene_refusal("E0735", at, "delay").says("lag_s says the same").hint("give one of them");
   read_fields(reference_fields(), at, reference);
   if (at.has("recording"))
     reference.recording = scene_recording_of(at, "recording", folder, reference.reading, scene);
@@ -56,13 +229,14 @@ void read_reference(const MapReader& top, const SceneFolder& folder, Scene& scen
   const MapReader& at = map ? *map : top;
   const char* key = map ? "channels" : "reference";
   reference.channels = at.texts(key);
-  if (reference.channels.empty()) refuse_scene("E0736", at, key, "expected the name of a channel");
+  if (reference.channels.empty())
+    throw scene_refusal("E0736", at, key).says("expected the name of a channel");
   const Document& names = at.require(key);
   for (const Document& name : is_scalar(names) ? std::vector<Document>{names} : names.list)
     check_scene_text(top, name, at.path_of(key), scene);
   if (std::set<std::string>(reference.channels.begin(), reference.channels.end()).size() !=
       reference.channels.size())
-    refuse_scene("E0737", at, key, "a channel stands twice");
+    throw scene_refusal("E0737", at, key).says("a channel stands twice");
   if (map) read_options(at, folder, reference, scene);
   if (scene.simulate)
     for (const std::string& channel : reference.channels)
@@ -76,13 +250,11 @@ void read_tilt(const MapReader& top, const SensorIndex& index, Scene& scene) {
   const SceneTilt tilt{sensor("gyroscope"), sensor("accelerometer_x"), sensor("accelerometer_z")};
   if (tilt.gyroscope == tilt.accelerometer_x || tilt.gyroscope == tilt.accelerometer_z ||
       tilt.accelerometer_x == tilt.accelerometer_z)
-    refuse_scene("E0747", top, "tilt", "three different sensors make a tilt");
+    throw scene_refusal("E0747", top, "tilt").says("three different sensors make a tilt");
   if (scene.reference && !scene.reference->mean && scene.reference->channels.size() != 1)
-    refuse_scene("E0747",
-                 top,
-                 "reference",
-                 "the reference of a tilt is one channel: the angle",
-                 "reference: [NAME]");
+    throw scene_refusal("E0747", top, "reference")
+        .says("the reference of a tilt is one channel: the angle")
+        .hint("reference: [NAME]");
   scene.tilt = tilt;
 }
 
@@ -98,23 +270,17 @@ void check_rows(const MapReader& top, const SensorIndex& index, const Scene& sce
     const std::vector<double>& h = scene.sensors[i].h;
     const std::string name = printable(scene.sensors[i].name, 40);
     if (h.size() != inputs)
-      refuse_scene_value("E0741",
-                         top,
-                         *index.places[i].node,
-                         index.places[i].path,
-                         fmt::format("the row h of sensor {} has {}, and there {} {}",
-                                     name,
-                                     plural(h.size(), "weight"),
-                                     inputs == 1 ? "is" : "are",
-                                     plural(inputs, "true input")),
-                         "give h one weight a truth signal or reference channel");
+      throw scene_refusal_at("E0741", top, *index.places[i].node, index.places[i].path)
+          .says("the row h of sensor {} has {}, and there {} {}",
+                name,
+                plural(h.size(), "weight"),
+                inputs == 1 ? "is" : "are",
+                plural(inputs, "true input"))
+          .hint("give h one weight a truth signal or reference channel");
     const bool blind = std::all_of(h.begin(), h.end(), [](double w) { return w == 0; });
     if (blind && !scene.simulate)
-      refuse_scene_value("E0741",
-                         top,
-                         *index.places[i].node,
-                         index.places[i].path,
-                         fmt::format("sensor {} sees no input: its row h is zero", name));
+      throw scene_refusal_at("E0741", top, *index.places[i].node, index.places[i].path)
+          .says("sensor {} sees no input: its row h is zero", name);
   }
 }
 
@@ -152,11 +318,9 @@ class SceneReader {
  private:
   void samples() {
     if (top_.has("recording") == top_.has("simulate"))
-      refuse_scene("E0735",
-                   top_,
-                   top_.has("recording") ? "simulate" : "recording",
-                   "a scene has either a recording or a simulation",
-                   "recording: FILE, or simulate: {rate_hz, duration_s, truth}");
+      throw scene_refusal("E0735", top_, top_.has("recording") ? "simulate" : "recording")
+          .says("a scene has either a recording or a simulation")
+          .hint("recording: FILE, or simulate: {rate_hz, duration_s, truth}");
     if (top_.has("recording"))
       scene_.recording =
           scene_recording_of(top_, "recording", folder_for_again(), scene_.reading, scene_);
@@ -173,11 +337,9 @@ class SceneReader {
   void algorithms() {
     const auto& list = top_.list("algorithms");
     if (list.empty())
-      refuse_scene("E0736",
-                   top_,
-                   "algorithms",
-                   "expected at least one algorithm",
-                   "leave the key out to run every algorithm that the scene has the data for");
+      throw scene_refusal("E0736", top_, "algorithms")
+          .says("expected at least one algorithm")
+          .hint("leave the key out to run every algorithm that the scene has the data for");
     for (std::size_t i = 0; i < list.size(); ++i)
       scene_.algorithms.push_back(algorithm(list[i], fmt::format("algorithms[{}]", i)));
   }
@@ -190,16 +352,17 @@ class SceneReader {
     const DocumentEntry* named = node.find("name");
     const Document& name = named != nullptr ? named->value : node;
     if (!is_scalar(name) || name.kind == Document::Kind::null || name.text.empty())
-      refuse_scene_value(
-          "E0737", top_, name, path, "an algorithm has a name", "{name: minque, gamma: 0.999}");
+      throw scene_refusal_at("E0737", top_, name, path)
+          .says("an algorithm has a name")
+          .hint("{name: minque, gamma: 0.999}");
     check_scene_text(top_, name, path, scene_);
     algorithm.name = name.text;
     for (const DocumentEntry& entry : node.map) {
       if (entry.key == "name") continue;
       const std::string key = fmt::format("{}.{}", path, printable(entry.key, 40));
       if (entry.value.kind != Document::Kind::number)
-        refuse_scene_value(
-            "E0744", top_, entry.value, key, "an option of an algorithm is a number");
+        throw scene_refusal_at("E0744", top_, entry.value, key)
+            .says("an option of an algorithm is a number");
       algorithm.options.emplace_back(entry.key, entry.value.number);
     }
     return algorithm;
@@ -228,33 +391,19 @@ class SceneReader {
 
 }  // namespace
 
-void refuse_scene(const char* code,
-                  const MapReader& at,
-                  std::string_view key,
-                  const std::string& what,
-                  const std::string& hint) {
+Refusal scene_refusal(const char* code, const MapReader& at, std::string_view key) {
   const DocumentEntry* entry = at.node().find(key);
   const Document& place = entry != nullptr ? entry->value : at.node();
-  throw Error({ErrorKind::input,
-               code,
-               at.where(place),
-               fmt::format("{}: {}", at.path_of(key), what),
-               entry != nullptr ? place.text : "",
-               hint});
+  return input_error(code, at.where(place))
+      .about(at.path_of(key))
+      .got(entry != nullptr ? place.text : "");
 }
 
-void refuse_scene_value(const char* code,
-                        const MapReader& at,
-                        const Document& node,
-                        const std::string& path,
-                        const std::string& what,
-                        const std::string& hint) {
-  throw Error({ErrorKind::input,
-               code,
-               at.where(node),
-               fmt::format("{}: {}", path, what),
-               shown(node),
-               hint});
+Refusal scene_refusal_at(const char* code,
+                         const MapReader& at,
+                         const Document& node,
+                         const std::string& path) {
+  return input_error(code, at.where(node)).about(path).got(shown(node));
 }
 
 void check_scene_text(const MapReader& at,
@@ -262,7 +411,7 @@ void check_scene_text(const MapReader& at,
                       const std::string& path,
                       Scene& scene) {
   if (node.text.find('\0') != std::string::npos)
-    refuse_scene_value("E0737", at, node, path, "a name holds a zero byte");
+    throw scene_refusal_at("E0737", at, node, path).says("a name holds a zero byte");
   if (printable(node.text) != node.text)
     scene.warnings.add("control_characters",
                        "names hold characters that cannot be printed; they are shown escaped",
@@ -286,12 +435,9 @@ std::size_t index_of_name(const MapReader& at,
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   const auto near = nearest(name, names);
-  refuse_scene(
-      "E0738",
-      at,
-      key,
-      fmt::format("{} is not {}", printable(name, 40), what),
-      did_you_mean(
+  throw scene_refusal("E0738", at, key)
+      .says("{} is not {}", printable(name, 40), what)
+      .hint(did_you_mean(
           near,
           names.size() > 9
               ? ""

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <set>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/scene/scene.hpp"
@@ -26,10 +26,7 @@ struct Named {
   const std::string& where;
   const std::string& key;
 
-  [[noreturn]] void refuse(const char* code, const std::string& what, std::string hint = "") const {
-    throw Error(
-        {ErrorKind::input, code, where, fmt::format("{}: {}", key, what), text, std::move(hint)});
-  }
+  Refusal refusal(const char* code) const { return input_error(code, where).about(key).got(text); }
 };
 
 bool leaves(const fs::path& relative) {
@@ -62,17 +59,16 @@ std::string hint_for(const std::string& named, const fs::path& folder) {
 }
 
 void check_text(const Named& named) {
-  if (named.text.empty()) named.refuse("E0730", "the name of a file is empty");
+  if (named.text.empty()) throw named.refusal("E0730").says("the name of a file is empty");
   if (named.text.find('\0') != std::string::npos)
-    named.refuse("E0730", "the name of a file holds a zero byte");
+    throw named.refusal("E0730").says("the name of a file holds a zero byte");
   const fs::path path(named.text);
   const bool long_part = std::any_of(
       path.begin(), path.end(), [](const fs::path& p) { return p.native().size() > 255; });
   if (named.text.size() > 4095 || long_part)
-    named.refuse("E0730",
-                 fmt::format("a name of {} bytes is too long: 4095 are allowed, 255 between two "
-                             "slashes",
-                             named.text.size()));
+    throw named.refusal("E0730").says(
+        "a name of {} bytes is too long: 4095 are allowed, 255 between two slashes",
+        named.text.size());
 }
 
 void check_kind(const Named& named, const fs::path& whole) {
@@ -80,17 +76,16 @@ void check_kind(const Named& named, const fs::path& whole) {
   std::error_code problem;
   const fs::file_status status = fs::status(whole, problem);
   if (status.type() == fs::file_type::not_found)
-    named.refuse("E0732",
-                 fmt::format("there is no file {}", shown),
-                 hint_for(named.text, whole.parent_path()));
-  if (problem)
-    named.refuse("E0732", fmt::format("cannot look at {}: {}", shown, problem.message()));
+    throw named.refusal("E0732")
+        .says("there is no file {}", shown)
+        .hint(hint_for(named.text, whole.parent_path()));
+  if (problem) throw named.refusal("E0732").says("cannot look at {}: {}", shown, problem.message());
   if (fs::is_directory(status))
-    named.refuse("E0733", fmt::format("{} is a folder, a file was expected", shown));
+    throw named.refusal("E0733").says("{} is a folder, a file was expected", shown);
   if (!fs::is_regular_file(status))
-    named.refuse("E0733",
-                 fmt::format("{} is no regular file (a pipe, a device, a socket)", shown),
-                 "save its data in a file");
+    throw named.refusal("E0733")
+        .says("{} is no regular file (a pipe, a device, a socket)", shown)
+        .hint("save its data in a file");
 }
 
 }  // namespace
@@ -103,12 +98,12 @@ std::string resolve_scene_file(const std::string& text,
   check_text(named);
   const fs::path path(text), root = folder_of(folder.scene);
   if (!folder.allow_outside && path.is_absolute())
-    named.refuse("E0731", "an absolute path leaves the scene's folder", kOutside);
+    throw named.refusal("E0731").says("an absolute path leaves the scene's folder").hint(kOutside);
   if (!folder.allow_outside && leaves(path.lexically_normal()))
-    named.refuse("E0731",
-                 fmt::format("{} lies outside the scene's folder",
-                             printable((root / path).lexically_normal().string())),
-                 kOutside);
+    throw named.refusal("E0731")
+        .says("{} lies outside the scene's folder",
+              printable((root / path).lexically_normal().string()))
+        .hint(kOutside);
   // As the system walks it: "link/.." is not always ".".
   const fs::path whole = fs::path(folder.scene).parent_path() / path;
   std::error_code problem, root_problem;
@@ -117,21 +112,19 @@ std::string resolve_scene_file(const std::string& text,
   const fs::path real = fs::canonical(whole, problem);
   const fs::path real_root = fs::canonical(root, root_problem);
   if (problem || root_problem)
-    named.refuse("E0732",
-                 fmt::format("cannot look at {}: {}",
-                             printable(whole.string()),
-                             (problem ? problem : root_problem).message()));
+    throw named.refusal("E0732").says("cannot look at {}: {}",
+                                      printable(whole.string()),
+                                      (problem ? problem : root_problem).message());
   if (!folder.allow_outside && !is_beneath(real, real_root))
-    named.refuse(
-        "E0731",
-        fmt::format("a link leads out of the scene's folder, to {}", printable(real.string())),
-        kOutside);
+    throw named.refusal("E0731")
+        .says("a link leads out of the scene's folder, to {}", printable(real.string()))
+        .hint(kOutside);
   // Some of what the kernel shows there calls itself a regular file and has no end.
   for (const char* system : {"/proc", "/sys"})
     if (is_beneath(real, system))
-      named.refuse("E0733", fmt::format("{} is no recorded file", printable(real.string())));
+      throw named.refusal("E0733").says("{} is no recorded file", printable(real.string()));
   if (fs::equivalent(whole, folder.scene, problem))
-    named.refuse("E0734", "the scene names itself as data");
+    throw named.refusal("E0734").says("the scene names itself as data");
   return whole.string();
 }
 
@@ -151,20 +144,16 @@ std::string path_for_scene(const std::string& file, const std::string& scene) {
   const fs::path root = whole_path(folder_of(scene), problem);
   const fs::path target = problem ? root : whole_path(file, problem);
   if (problem)
-    throw Error({ErrorKind::input,
-                 "E0732",
-                 scene,
-                 fmt::format("cannot look at {}: {}", printable(file), problem.message())});
+    throw input_error("E0732", scene)
+        .says("cannot look at {}: {}", printable(file), problem.message());
   const fs::path relative = target.lexically_relative(root);
   const std::string name =
       relative.empty() || leaves(relative) ? target.string() : relative.string();
   if (first_invalid_utf8(name) != std::string::npos || name.find('\0') != std::string::npos)
-    throw Error({ErrorKind::output,
-                 "E0745",
-                 scene,
-                 "a file whose name is no UTF-8 cannot be named in a scene",
-                 name,
-                 "rename it"});
+    throw output_error("E0745", scene)
+        .says("a file whose name is no UTF-8 cannot be named in a scene")
+        .got(name)
+        .hint("rename it");
   return name;
 }
 
@@ -182,12 +171,9 @@ void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& ou
     for (const std::string& other : outputs)  // two names of one existing file
       twice = twice || (&other < &output && fs::equivalent(other, output, problem) && !problem);
     if (twice)
-      throw Error({ErrorKind::output,
-                   "E0746",
-                   output,
-                   "two outputs are one file",
-                   "",
-                   "give each a name of its own"});
+      throw output_error("E0746", output)
+          .says("two outputs are one file")
+          .hint("give each a name of its own");
   }
 }
 

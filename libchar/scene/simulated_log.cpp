@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/scene/text/scene_writer.hpp"
@@ -21,11 +21,9 @@ void check_columns(const ArraySimulation& simulation, bool truth) {
   std::vector<std::string> names = simulation.truth_names;
   for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
   if (std::find(names.begin(), names.end(), "temperature") != names.end())
-    throw Error({ErrorKind::usage,
-                 "E0721",
-                 "simulate",
-                 "a channel has the name of the temperature column",
-                 "temperature"});
+    throw usage_error("E0721", "simulate")
+        .says("a channel has the name of the temperature column")
+        .got("temperature");
 }
 
 void stream_into(LogWriter& writer,

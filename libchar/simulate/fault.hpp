@@ -33,13 +33,7 @@ struct SensorFault {
 
 template <>
 inline constexpr auto enum_table<FaultKind> =
-    enum_words<FaultKind>({{FaultKind::scale, "scale"},
-                           {FaultKind::bias, "bias"},
-                           {FaultKind::ramp, "ramp"},
-                           {FaultKind::stuck, "stuck"},
-                           {FaultKind::saturation, "saturation"},
-                           {FaultKind::noise, "noise"},
-                           {FaultKind::dropout, "dropout"}});
+    enum_words<FaultKind, "scale bias ramp stuck saturation noise dropout">;
 
 /// Applies the faults of one sensor to consecutive blocks, in the order of the list.
 class FaultInjector {

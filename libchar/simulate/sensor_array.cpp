@@ -13,19 +13,15 @@
 #include <numbers>
 #include <set>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/thread_limit.hpp"
 #include "libchar/core/process/work.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/simulate/detail/sensor_chain.hpp"
 
 namespace libchar {
 namespace {
 
 constexpr std::uint64_t kTemperatureIndex = 1U << 20U;  // its random stream, away from the truths'
-
-[[noreturn]] void refuse(std::string what, std::string hint = "") {
-  throw Error({ErrorKind::input, "E0554", "", std::move(what), "", std::move(hint)});
-}
 
 /// All that is made is drawn, also what is renewed before a sample has seen it.
 constexpr double kMostRenewals = 1000;
@@ -35,28 +31,29 @@ void check_hold(const char* key,
                 const std::string& sensor,
                 double rate_hz) {
   if (!hold_s || *hold_s * rate_hz * kMostRenewals >= 1) return;
-  refuse(
-      fmt::format("sensor {}: {} of {} s renews the noise more than {} times between two samples",
-                  sensor,
-                  key,
-                  *hold_s,
-                  kMostRenewals),
-      fmt::format("leave {} out: noise is then made anew for each sample", key));
+  throw input_error("E0554")
+      .says("sensor {}: {} of {} s renews the noise more than {} times between two samples",
+            sensor,
+            key,
+            *hold_s,
+            kMostRenewals)
+      .hint("leave {} out: noise is then made anew for each sample", key);
 }
 
 void check_sensor(const ArraySimulation& s, const SimulatedSensor& sensor) {
   if (sensor.h.size() != s.truth.size())
-    refuse(fmt::format("sensor {} weighs {} truth signals, and there are {}",
-                       sensor.name,
-                       sensor.h.size(),
-                       s.truth.size()));
+    throw input_error("E0554").says("sensor {} weighs {} truth signals, and there are {}",
+                                    sensor.name,
+                                    sensor.h.size(),
+                                    s.truth.size());
   const double rate = s.rate_hz * static_cast<double>(s.oversampling);
   if (sensor.model.bandwidth_hz && *sensor.model.bandwidth_hz > 10 * rate)
-    refuse(fmt::format("sensor {}: a bandwidth of {} Hz is far above the rate of {} Hz",
-                       sensor.name,
-                       *sensor.model.bandwidth_hz,
-                       rate),
-           "leave bandwidth_hz out: nothing of it would be seen");
+    throw input_error("E0554")
+        .says("sensor {}: a bandwidth of {} Hz is far above the rate of {} Hz",
+              sensor.name,
+              *sensor.model.bandwidth_hz,
+              rate)
+        .hint("leave bandwidth_hz out: nothing of it would be seen");
   check_hold("white_hold_s", sensor.model.white_hold_s, sensor.name, rate);
   check_hold("flicker_hold_s", sensor.model.flicker_hold_s, sensor.name, rate);
 }
@@ -67,13 +64,16 @@ void check_signals(const ArraySimulation& s) {
     const bool derived =
         signal.kind == "derivative" || signal.kind == "sine_of" || signal.kind == "cosine_of";
     if (derived && signal.of >= j)
-      refuse(fmt::format(
-          "truth signal {} is made of signal {}, which does not stand before it", j, signal.of));
-    if (signal.kind == "points" && signal.points.empty()) refuse("a signal of points has none");
+      throw input_error("E0554").says(
+          "truth signal {} is made of signal {}, which does not stand before it", j, signal.of);
+    if (signal.kind == "points" && signal.points.empty())
+      throw input_error("E0554").says("a signal of points has none");
     if (signal.kind == "recording" && signal.samples.empty())
-      refuse("a signal from a recording has no samples");
+      throw input_error("E0554").says("a signal from a recording has no samples");
     if (signal.kind == "recording" && s.oversampling > 1)
-      refuse("a signal from a recording cannot be oversampled", "leave oversampling at 1");
+      throw input_error("E0554")
+          .says("a signal from a recording cannot be oversampled")
+          .hint("leave oversampling at 1");
   }
 }
 
@@ -99,28 +99,34 @@ void keep_every(std::span<const double> fine, std::uint64_t step, std::span<doub
 }  // namespace
 
 void check(const ArraySimulation& s) {
-  if (s.sensors.empty()) refuse("there is no sensor to simulate");
+  if (s.sensors.empty()) throw input_error("E0554").says("there is no sensor to simulate");
   if (!(s.rate_hz >= 1e-9 && s.rate_hz <= 1e12))
-    refuse("the sampling rate must be above 0 Hz: from 1e-9 to 1e12");
+    throw input_error("E0554").says("the sampling rate must be above 0 Hz: from 1e-9 to 1e12");
   if (s.samples == 0)
-    refuse("there is no sample to simulate", "give a duration or a number of samples");
-  if (s.oversampling == 0 || s.oversampling > 1024) refuse("oversampling must be from 1 to 1024");
+    throw input_error("E0554")
+        .says("there is no sample to simulate")
+        .hint("give a duration or a number of samples");
+  if (s.oversampling == 0 || s.oversampling > 1024)
+    throw input_error("E0554").says("oversampling must be from 1 to 1024");
   if (s.truth.empty() || s.truth.size() != s.truth_names.size())
-    refuse("every truth signal needs a name, and there must be one");
+    throw input_error("E0554").says("every truth signal needs a name, and there must be one");
   check_signals(s);
   std::set<std::string> names(s.truth_names.begin(), s.truth_names.end());
-  if (names.size() != s.truth_names.size()) refuse("two truth signals have one name");
+  if (names.size() != s.truth_names.size())
+    throw input_error("E0554").says("two truth signals have one name");
   for (const SimulatedSensor& sensor : s.sensors) {
     if (!names.insert(sensor.name).second)
-      refuse(fmt::format("two channels would be called {}", sensor.name),
-             "rename the sensor (channel: in a model, name: in a scene); a truth signal is called "
-             "truth unless it has a name");
+      throw input_error("E0554")
+          .says("two channels would be called {}", sensor.name)
+          .hint(
+              "rename the sensor (channel: in a model, name: in a scene); a truth signal is called "
+              "truth unless it has a name");
     check_sensor(s, sensor);
   }
   for (const SensorFault& fault : s.faults)
     if (fault.sensor >= s.sensors.size())
-      refuse(
-          fmt::format("a fault is of sensor {}, and there are {}", fault.sensor, s.sensors.size()));
+      throw input_error("E0554").says(
+          "a fault is of sensor {}, and there are {}", fault.sensor, s.sensors.size());
 }
 
 struct ArraySimulator::State {
@@ -210,9 +216,7 @@ struct ArraySimulator::State {
 };
 
 ArraySimulator::ArraySimulator(const ArraySimulation& simulation, int threads)
-    : state_(std::make_unique<State>(simulation, threads)) {}
-ArraySimulator::~ArraySimulator() = default;
-ArraySimulator::ArraySimulator(ArraySimulator&&) noexcept = default;
+    : state_(detail::hidden<State>(simulation, threads)) {}
 
 std::span<const std::span<const double>> ArraySimulator::next(std::size_t wanted) {
   State& s = *state_;

@@ -2,12 +2,12 @@
 // Arrays of simulated sensors: y_i = model_i(h_i · x) with known truth x.
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/model/sensor_model.hpp"
 #include "libchar/simulate/fault.hpp"
 #include "libchar/simulate/signal.hpp"
@@ -53,8 +53,6 @@ struct DeviceDraw {
 class ArraySimulator {
  public:
   explicit ArraySimulator(const ArraySimulation& simulation, int threads = 1);
-  ~ArraySimulator();
-  ArraySimulator(ArraySimulator&&) noexcept;
 
   /// Columns of the next block: the sensors, then the truth signals, then the temperature if there
   /// is one. Empty at the end. Valid until the next call.
@@ -63,7 +61,7 @@ class ArraySimulator {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

@@ -13,10 +13,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numbers>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 
 namespace libchar {
@@ -258,12 +257,10 @@ std::unique_ptr<SignalSource> make_signal(const SignalSpec& spec,
   if (kind == "sine_of") return std::make_unique<Circular>(spec, 0.0);
   if (kind == "cosine_of") return std::make_unique<Circular>(spec, 0.25);
   const auto near = nearest(kind, signal_kinds());
-  throw Error({ErrorKind::input,
-               "E0553",
-               "",
-               "unknown kind of signal",
-               kind,
-               did_you_mean(near, fmt::format("one of {}", fmt::join(signal_kinds(), ", ")))});
+  throw input_error("E0553")
+      .says("unknown kind of signal")
+      .got(kind)
+      .hint(did_you_mean(near, fmt::format("one of {}", fmt::join(signal_kinds(), ", "))));
 }
 
 }  // namespace libchar

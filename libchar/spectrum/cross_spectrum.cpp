@@ -13,7 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segment_choice.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 
@@ -100,11 +100,9 @@ CrossSpectrum cross_spectrum(std::span<const double> x,
   check_options(options);
   check_rate(rate_hz);
   if (x.size() != y.size())
-    throw Error({ErrorKind::usage,
-                 "E0873",
-                 "",
-                 "a cross spectrum is of two records of one length",
-                 fmt::format("{} and {} samples", x.size(), y.size())});
+    throw usage_error("E0873")
+        .says("a cross spectrum is of two records of one length")
+        .got("{} and {} samples", x.size(), y.size());
   CrossSpectrum out;
   const Layout layout =
       layout_of(choose_segment(presence(x, y), options, out.notes), options.overlap);
@@ -134,12 +132,10 @@ CrossSpectrum cross_spectrum(std::span<const double> x,
   out.segments = average.used();
   out.dropped = average.dropped();
   if (out.segments < 2)
-    throw Error({ErrorKind::numeric,
-                 "E0874",
-                 "",
-                 "the coherence of a single segment is 1 whatever the channels are",
-                 fmt::format("{} segment of {} samples", out.segments, out.segment),
-                 "give a shorter `segment`"});
+    throw numeric_error("E0874")
+        .says("the coherence of a single segment is 1 whatever the channels are")
+        .got("{} segment of {} samples", out.segments, out.segment)
+        .hint("give a shorter `segment`");
   out.effective_segments = average.degrees_of_freedom(window) / 2;
   out.significant_coherence = 1 - std::pow(kFalseAlarm, 1 / (out.effective_segments - 1));
   double energy = 0;

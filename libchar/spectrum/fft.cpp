@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <numbers>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/process/work.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/fft_plan.hpp"
 
 namespace libchar {
@@ -30,17 +30,12 @@ struct RealFft::State {
   fftw_complex* bins() const { return reinterpret_cast<fftw_complex*>(spectrum.get()); }
 };
 
-RealFft::RealFft(std::size_t n) : state_(std::make_unique<State>()) {
-  if (n == 0)
-    throw Error({ErrorKind::numeric, "E0413", "", "a Fourier transform needs at least one value"});
+RealFft::RealFft(std::size_t n) : state_(detail::hidden<State>()) {
+  if (n == 0) throw numeric_error("E0413").says("a Fourier transform needs at least one value");
   state_->n = n;
   state_->values = aligned<double>(n);
   state_->spectrum = aligned<std::complex<double>>(n / 2 + 1);
 }
-
-RealFft::~RealFft() = default;
-RealFft::RealFft(RealFft&&) noexcept = default;
-RealFft& RealFft::operator=(RealFft&&) noexcept = default;
 
 std::span<double> RealFft::input() {
   return {state_->values.get(), state_->n};
@@ -195,7 +190,7 @@ fftw_iodim64 dimension_of(std::size_t n, std::size_t step) {
 }  // namespace
 
 ComplexFft::ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance)
-    : state_(std::make_unique<State>()) {
+    : state_(detail::hidden<State>()) {
   const fftw_iodim64 dimension = dimension_of(n, step), batch = dimension_of(count, distance);
   const PlannedFor memory(n * step + count * distance);
   State& s = *state_;
@@ -212,7 +207,7 @@ ComplexFft::ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::
         1, &dimension, 1, &batch, memory.values, memory.values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
 
-ComplexFft::ComplexFft(std::size_t n) : state_(std::make_unique<State>()) {
+ComplexFft::ComplexFft(std::size_t n) : state_(detail::hidden<State>()) {
   const fftw_iodim64 dimension = dimension_of(n, 1);
   const PlannedFor from(n), to(n);
   State& s = *state_;
@@ -226,9 +221,6 @@ ComplexFft::ComplexFft(std::size_t n) : state_(std::make_unique<State>()) {
     s.plan = fft_plan::owned(fftw_plan_guru64_dft(
         1, &dimension, 0, nullptr, from.values, to.values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
-ComplexFft::~ComplexFft() = default;
-ComplexFft::ComplexFft(ComplexFft&&) noexcept = default;
-ComplexFft& ComplexFft::operator=(ComplexFft&&) noexcept = default;
 
 void ComplexFft::transform(double* interleaved) const {
   auto* const values = reinterpret_cast<fftw_complex*>(interleaved);
@@ -289,13 +281,9 @@ struct Dct::State {
 };
 
 Dct::Dct(std::size_t n) {
-  if (n == 0)
-    throw Error({ErrorKind::numeric, "E0413", "", "a cosine transform needs at least one value"});
-  state_ = std::make_unique<State>(n);
+  if (n == 0) throw numeric_error("E0413").says("a cosine transform needs at least one value");
+  state_ = detail::hidden<State>(n);
 }
-Dct::~Dct() = default;
-Dct::Dct(Dct&&) noexcept = default;
-Dct& Dct::operator=(Dct&&) noexcept = default;
 
 void Dct::State::permute(std::span<const double> y, double centre) {
   const std::span<double> v = fft.input();
@@ -324,10 +312,7 @@ void Dct::State::rotate(std::span<const std::complex<double>> v, double* c) cons
 std::span<const double> Dct::transform(std::span<const double> y) {
   const std::size_t n = state_->fft.size();
   if (y.size() != n)
-    throw Error({ErrorKind::numeric,
-                 "E0413",
-                 "",
-                 fmt::format("a cosine transform of {} values was given {}", n, y.size())});
+    throw numeric_error("E0413").says("a cosine transform of {} values was given {}", n, y.size());
   count_work(WorkKind::cosine_transforms, 1);
   const double centre = centre_of(y);
   state_->permute(y, centre);
@@ -349,10 +334,7 @@ struct SineSums::State {
   RealFft fft;
 };
 
-SineSums::SineSums(std::size_t n) : state_(std::make_unique<State>(n)) {}
-SineSums::~SineSums() = default;
-SineSums::SineSums(SineSums&&) noexcept = default;
-SineSums& SineSums::operator=(SineSums&&) noexcept = default;
+SineSums::SineSums(std::size_t n) : state_(detail::hidden<State>(n)) {}
 
 std::span<double> SineSums::input() {
   return state_->values;
@@ -376,9 +358,8 @@ struct CosineSums::State {
   Plan plan;
 };
 
-CosineSums::CosineSums(std::size_t n) : state_(std::make_unique<State>()) {
-  if (n == 0)
-    throw Error({ErrorKind::numeric, "E0413", "", "sums of cosines need at least one value"});
+CosineSums::CosineSums(std::size_t n) : state_(detail::hidden<State>()) {
+  if (n == 0) throw numeric_error("E0413").says("sums of cosines need at least one value");
   State& s = *state_;
   s.n = n;
   s.values = aligned<double>(n);
@@ -396,9 +377,6 @@ CosineSums::CosineSums(std::size_t n) : state_(std::make_unique<State>()) {
                                 FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
   });
 }
-CosineSums::~CosineSums() = default;
-CosineSums::CosineSums(CosineSums&&) noexcept = default;
-CosineSums& CosineSums::operator=(CosineSums&&) noexcept = default;
 
 std::span<double> CosineSums::input() {
   return {state_->values.get(), state_->n};

@@ -5,9 +5,10 @@
 
 #include <complex>
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <vector>
+
+#include "libchar/core/hidden.hpp"
 
 namespace libchar {
 
@@ -16,9 +17,6 @@ namespace libchar {
 class RealFft {
  public:
   explicit RealFft(std::size_t n);
-  ~RealFft();
-  RealFft(RealFft&&) noexcept;
-  RealFft& operator=(RealFft&&) noexcept;
   std::span<double> input();                          ///< n values to fill in
   std::span<const std::complex<double>> transform();  ///< n/2 + 1 values, valid until the next call
   std::span<std::complex<double>> coefficients();     ///< n/2 + 1 values to fill in for `inverse`
@@ -27,7 +25,7 @@ class RealFft {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 /// Forward complex transforms of n values in place, `count` of them at once: value t of transform i
@@ -39,16 +37,13 @@ class ComplexFft {
   ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance);
   /// One transform of n values side by side, from one place to another.
   explicit ComplexFft(std::size_t n);
-  ~ComplexFft();
-  ComplexFft(ComplexFft&&) noexcept;
-  ComplexFft& operator=(ComplexFft&&) noexcept;
   void transform(double* interleaved) const;  ///< real and imaginary parts in turn
   /// The same from one place to another; `from` stays as it is.
   void transform(const double* from, double* to) const;
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 /// Orthonormal DCT-II: c_0 = sum y / sqrt(n); c_k = sqrt(2/n) sum_t y_t cos(pi k (t + 1/2) / n), by
@@ -56,46 +51,37 @@ class ComplexFft {
 class Dct {
  public:
   explicit Dct(std::size_t n);
-  ~Dct();
-  Dct(Dct&&) noexcept;
-  Dct& operator=(Dct&&) noexcept;
   /// n coefficients of y (n values), valid until the next call. The mean is subtracted first (c_0
   /// corrected after).
   std::span<const double> transform(std::span<const double> y);
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 /// y_t = c_0 / sqrt(n) + sqrt(2/n) sum_k c_k cos(pi k (t + 1/2) / n), t = 0..n-1: Dct undone.
 class CosineSums {
  public:
   explicit CosineSums(std::size_t n);
-  ~CosineSums();
-  CosineSums(CosineSums&&) noexcept;
-  CosineSums& operator=(CosineSums&&) noexcept;
   std::span<double> input();            ///< c_0..c_{n-1}, to fill in before every transform
   std::span<const double> transform();  ///< y_0..y_{n-1}, valid until the next call
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 /// y_t = sum_k c_k sin(pi k t / n), k and t = 1..n-1; y_0 = 0, and c_0 is not looked at.
 class SineSums {
  public:
   explicit SineSums(std::size_t n);
-  ~SineSums();
-  SineSums(SineSums&&) noexcept;
-  SineSums& operator=(SineSums&&) noexcept;
   std::span<double> input();            ///< c_0..c_{n-1}
   std::span<const double> transform();  ///< y_0..y_{n-1}, valid until the next call
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

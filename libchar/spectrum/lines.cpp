@@ -290,17 +290,18 @@ void add_band(std::vector<Found>& lines, const Found& band) {
   lines.push_back(band);
 }
 
+/// The largest line that rounding makes of a slow drift.
+double largest_quantization_line(const Quantization& quantization) {
+  if (!(quantization.step > 0)) return 0;
+  const double blur = std::numbers::pi * quantization.noise_sd / quantization.step;
+  return quantization.step / std::numbers::pi * std::exp(-2 * blur * blur);
+}
+
 }  // namespace
 
 Quantization quantization_of(double step, double difference_sd) {
   const double variance = difference_sd * difference_sd / 2 - step * step / 12;
   return {step, std::sqrt(std::max(variance, 0.0))};
-}
-
-double largest_quantization_line(const Quantization& quantization) {
-  if (!(quantization.step > 0)) return 0;
-  const double blur = std::numbers::pi * quantization.noise_sd / quantization.step;
-  return quantization.step / std::numbers::pi * std::exp(-2 * blur * blur);
 }
 
 std::vector<SpectralLine> find_lines(const Spectrum& spectrum,

@@ -23,9 +23,6 @@ struct Quantization {
 /// From the LSB and the standard deviation of first differences of the rounded record.
 Quantization quantization_of(double step, double difference_sd);
 
-/// The largest line that rounding makes of a slow drift.
-double largest_quantization_line(const Quantization& quantization);
-
 /// Narrow lines that stand out of the local median floor with a false-alarm probability below
 /// `alarm` over the whole spectrum. Those that rounding may have made are not among them.
 std::vector<SpectralLine> find_lines(const Spectrum& spectrum,

@@ -16,7 +16,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segment_choice.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 
@@ -63,15 +63,13 @@ Spectrum median_welch(std::span<const double> record, double rate_hz, const Welc
   const Layout layout = layout_of(choose_segment(record, options, notes), options.overlap);
   const std::uint64_t segments = layout.count(record.size()), bins = layout.segment / 2 + 1;
   if (static_cast<double>(segments) * static_cast<double>(bins) * sizeof(double) > kMostPowerBytes)
-    throw Error({ErrorKind::usage,
-                 "E0872",
-                 "`average`",
-                 fmt::format("a median takes the powers of all {} segments of {} bins at once, "
-                             "which are more than 2 GiB",
-                             segments,
-                             bins),
-                 "",
-                 "give less `overlap`, or read less with `from_s`, `to_s`"});
+    throw usage_error("E0872", "`average`")
+        .says(
+            "a median takes the powers of all {} segments of {} bins at once, which are more than "
+            "2 GiB",
+            segments,
+            bins)
+        .hint("give less `overlap`, or read less with `from_s`, `to_s`");
   const std::vector<double> window = window_values(options.window, layout.segment);
   std::vector<std::vector<double>> powers(segments);
   tbb::parallel_for(std::uint64_t{0}, segments, [&](std::uint64_t i) {

@@ -10,8 +10,7 @@ namespace libchar {
 enum class SegmentAverage { mean, median };
 
 template <>
-inline constexpr auto enum_table<SegmentAverage> = enum_words<SegmentAverage>(
-    {{SegmentAverage::mean, "mean"}, {SegmentAverage::median, "median"}});
+inline constexpr auto enum_table<SegmentAverage> = enum_words<SegmentAverage, "mean median">;
 
 /// Expected median of `count` independent powers of mean 1 with 2 degrees of freedom: of an even
 /// number the mean of the middle two.

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 
 namespace libchar {
@@ -18,18 +18,16 @@ using namespace welch_detail;
 constexpr double kMostCellBytes = 2147483648.0;
 
 void check_cells(std::uint64_t samples, const Layout& layout) {
-  const auto refuse = [](const std::string& what, const std::string& hint) {
-    throw Error({ErrorKind::usage, "E0875", "`segment`", what, "", hint});
-  };
   if (layout.segment > samples)
-    refuse(fmt::format(
-               "a segment of {} samples is longer than the record of {}", layout.segment, samples),
-           fmt::format("the longest that fits has {}", samples));
+    throw usage_error("E0875", "`segment`")
+        .says("a segment of {} samples is longer than the record of {}", layout.segment, samples)
+        .hint("the longest that fits has {}", samples);
   const double cells =
       static_cast<double>(layout.count(samples)) * static_cast<double>(layout.segment / 2 + 1);
   if (cells * sizeof(double) > kMostCellBytes)
-    refuse("the spectrogram would take more than 2 GiB",
-           "give less `overlap`, or read less with `from_s`, `to_s`");
+    throw usage_error("E0875", "`segment`")
+        .says("the spectrogram would take more than 2 GiB")
+        .hint("give less `overlap`, or read less with `from_s`, `to_s`");
 }
 
 }  // namespace

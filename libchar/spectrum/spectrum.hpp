@@ -13,11 +13,9 @@ enum class Sides { one, two };
 enum class Scaling { psd, ps, lsd, ls };  ///< U²/Hz, U², U/√Hz, U
 
 template <>
-inline constexpr auto enum_table<Sides> = enum_words<Sides>({{Sides::one, "one"},
-                                                             {Sides::two, "two"}});
+inline constexpr auto enum_table<Sides> = enum_words<Sides, "one two">;
 template <>
-inline constexpr auto enum_table<Scaling> = enum_words<Scaling>(
-    {{Scaling::psd, "psd"}, {Scaling::ps, "ps"}, {Scaling::lsd, "lsd"}, {Scaling::ls, "ls"}});
+inline constexpr auto enum_table<Scaling> = enum_words<Scaling, "psd ps lsd ls">;
 
 struct Spectrum {
   Sides sides = Sides::one;

@@ -32,12 +32,6 @@ std::pair<double, double> IntervalFactors::interval(const Spectrum& spectrum, st
   return {value * low, value * high};
 }
 
-std::pair<double, double> spectrum_interval(const Spectrum& spectrum,
-                                            std::size_t i,
-                                            double confidence) {
-  return IntervalFactors(confidence).interval(spectrum, i);
-}
-
 std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
                                                         IntervalFactors& factors) {
   std::vector<std::optional<Interval>> out(spectrum.frequency_hz.size());

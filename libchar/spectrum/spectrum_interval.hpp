@@ -22,7 +22,7 @@ class IntervalFactors {
  public:
   explicit IntervalFactors(double confidence) : confidence_(confidence) {}
   std::pair<double, double> of(double dof);
-  /// Interval of bin i, as spectrum_interval.
+  /// Interval of bin i of a density (for lsd, ls: of the root).
   std::pair<double, double> interval(const Spectrum& spectrum, std::size_t i);
 
  private:
@@ -30,12 +30,7 @@ class IntervalFactors {
   std::unordered_map<double, std::pair<double, double>> known_;
 };
 
-/// Chi-square interval of bin i of a density at the given confidence (for lsd, ls: of the root).
-std::pair<double, double> spectrum_interval(const Spectrum& spectrum,
-                                            std::size_t i,
-                                            double confidence);
-
-/// The same for every bin; none where its degrees of freedom are not known.
+/// That of every bin; none where its degrees of freedom are not known.
 std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
                                                         IntervalFactors& factors);
 std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,

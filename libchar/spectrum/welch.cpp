@@ -14,8 +14,8 @@
 #include <optional>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
@@ -212,24 +212,20 @@ Spectrum welch_using_up(std::vector<double> record,
 std::uint64_t segment_samples(double seconds, double rate_hz) {
   const std::string got = duration_text(seconds, 6);
   if (!(rate_hz > 0))
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "`segment`",
-                 "a time needs the sampling rate, which this log does not say",
-                 got,
-                 "give `rate_hz`, or a number of samples"});
+    throw usage_error("E0205", "`segment`")
+        .says("a time needs the sampling rate, which this log does not say")
+        .got(got)
+        .hint("give `rate_hz`, or a number of samples");
   const double samples = std::round(seconds * rate_hz);
   const bool few = samples < kShortestSegment;
   if (!few && samples <= kLongestSegment) return static_cast<std::uint64_t>(samples);
-  throw Error({ErrorKind::usage,
-               "E0201",
-               "`segment`",
-               fmt::format("at {} Hz this is {} samples, and a segment {} {}",
-                           brief_text(rate_hz, 6),
-                           brief_text(samples, 6),
-                           few ? "needs at least" : "has at most",
-                           few ? kShortestSegment : kLongestSegment),
-               got});
+  throw usage_error("E0201", "`segment`")
+      .says("at {} Hz this is {} samples, and a segment {} {}",
+            brief_text(rate_hz, 6),
+            brief_text(samples, 6),
+            few ? "needs at least" : "has at most",
+            few ? kShortestSegment : kLongestSegment)
+      .got(got);
 }
 
 }  // namespace libchar

@@ -2,10 +2,10 @@
 // Welch's averaged modified periodogram.
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
@@ -13,21 +13,18 @@ namespace libchar {
 enum class Detrend { none, constant, linear };
 
 template <>
-inline constexpr auto enum_table<Detrend> = enum_words<Detrend>({{Detrend::none, "none"},
-                                                                 {Detrend::constant, "constant"},
-                                                                 {Detrend::linear, "linear"}});
+inline constexpr auto enum_table<Detrend> = enum_words<Detrend, "none constant linear">;
 
 /// What welch() and WelchStream work in, kept from one record to the next: for long segments it is as large as a
 /// record, and new memory costs as much as a transform. Any number of threads may share it.
 class WelchWorkspace {
  public:
   WelchWorkspace();
-  ~WelchWorkspace();
   struct State;
   State& state() { return *state_; }
 
  private:
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 struct WelchOptions {

@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 #include "libchar/spectrum/detail/welch_workspace.hpp"
@@ -147,13 +147,10 @@ void WelchStream::State::take_last_half(SharedBlocks& blocks) {
 
 void WelchStream::State::check_shared(const SharedBlocks& blocks) const {
   if (halves && blocks.length() == layout.hop) return;
-  throw Error(
-      {ErrorKind::usage,
-       "E0201",
-       "",
-       fmt::format("a spectrum with segments of {} samples cannot share blocks", layout.segment),
-       std::to_string(blocks.length()),
-       halves ? fmt::format("share blocks of {} samples", layout.hop) : ""});
+  throw usage_error("E0201")
+      .says("a spectrum with segments of {} samples cannot share blocks", layout.segment)
+      .got(std::to_string(blocks.length()))
+      .hint(halves ? fmt::format("share blocks of {} samples", layout.hop) : "");
 }
 
 // The group under way, and the segment of a half that still waits for its partner. Nothing here
@@ -178,13 +175,10 @@ void WelchStream::State::add_rest(Average& whole) const {
 WelchStream::WelchStream(const WelchOptions& options, WelchWorkspace* workspace) {
   check_options(options);
   if (options.segment == 0)
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "",
-                 "a streamed spectrum needs the length of its segments beforehand",
-                 "",
-                 "give a segment length"});
-  state_ = std::make_unique<State>(options, workspace);
+    throw usage_error("E0205")
+        .says("a streamed spectrum needs the length of its segments beforehand")
+        .hint("give a segment length");
+  state_ = detail::hidden<State>(options, workspace);
 }
 WelchStream::WelchStream(const WelchOptions& options,
                          const WelchSums& sums,
@@ -193,9 +187,6 @@ WelchStream::WelchStream(const WelchOptions& options,
   state_->average = Average(state_->options, state_->layout, sums);
   state_->samples = sums.samples;
 }
-WelchStream::~WelchStream() = default;
-WelchStream::WelchStream(WelchStream&&) noexcept = default;
-WelchStream& WelchStream::operator=(WelchStream&&) noexcept = default;
 
 void WelchStream::push(std::span<const double> samples) {
   state_->samples += samples.size();

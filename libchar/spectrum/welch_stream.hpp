@@ -2,10 +2,10 @@
 // Welch's method on a stream, for a fixed segment length.
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/core/process/shared_blocks.hpp"
 #include "libchar/spectrum/welch.hpp"
 #include "libchar/spectrum/welch_sums.hpp"
@@ -23,9 +23,6 @@ class WelchStream {
   WelchStream(const WelchOptions& options,
               const WelchSums& sums,
               WelchWorkspace* workspace = nullptr);
-  ~WelchStream();
-  WelchStream(WelchStream&&) noexcept;
-  WelchStream& operator=(WelchStream&&) noexcept;
   void push(std::span<const double> samples);
   Spectrum finish(double rate_hz) const;
 
@@ -44,7 +41,7 @@ class WelchStream {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

@@ -43,10 +43,7 @@ struct WelchParts::State {
 };
 
 WelchParts::WelchParts(const WelchOptions& options, WelchWorkspace* workspace)
-    : state_(std::make_unique<State>(options, workspace)) {}
-WelchParts::~WelchParts() = default;
-WelchParts::WelchParts(WelchParts&&) noexcept = default;
-WelchParts& WelchParts::operator=(WelchParts&&) noexcept = default;
+    : state_(detail::hidden<State>(options, workspace)) {}
 
 std::string WelchParts::why_not(const WelchOptions& options, std::uint64_t part) {
   check_options(options);

@@ -3,11 +3,11 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/core/numeric/state_archive.hpp"
 #include "libchar/core/process/shared_blocks.hpp"
 #include "libchar/spectrum/welch.hpp"
@@ -30,9 +30,6 @@ class WelchParts {
  public:
   /// `options.segment` > 0. `workspace`: shared with others, and must live as long.
   explicit WelchParts(const WelchOptions& options, WelchWorkspace* workspace = nullptr);
-  ~WelchParts();
-  WelchParts(WelchParts&&) noexcept;
-  WelchParts& operator=(WelchParts&&) noexcept;
 
   /// "" or why records cannot be divided into parts of so many samples, as a sentence without its end.
   static std::string why_not(const WelchOptions& options, std::uint64_t part);
@@ -50,7 +47,7 @@ class WelchParts {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 /// Squared cosine transforms of blocks of half a segment, with the bits that WelchParts gives them, where

@@ -18,11 +18,7 @@ enum class Window {
 
 template <>
 inline constexpr auto enum_table<Window> =
-    enum_words<Window>({{Window::hann, "hann"},
-                        {Window::rectangular, "rectangular"},
-                        {Window::blackman_harris, "blackman_harris"},
-                        {Window::flat_top, "flat_top"},
-                        {Window::hann_nonzero, "hann_nonzero"}});
+    enum_words<Window, "hann rectangular blackman_harris flat_top hann_nonzero">;
 
 std::vector<double> window_values(Window window, std::size_t n);
 

@@ -1,8 +1,8 @@
-#include "libchar/allan/gauss_markov_curves.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "libchar/allan/noise_curves.hpp"
 
 using namespace libchar;
 

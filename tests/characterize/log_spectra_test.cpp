@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "libchar/core/error.hpp"
-#include "libchar/report/text/spectra_text.hpp"
+#include "libchar/report/text/curves_text.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"
 

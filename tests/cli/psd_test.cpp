@@ -101,8 +101,10 @@ TEST_CASE("psd writes the library's spectrum as CSV and as JSON, whole and strea
   CHECK(channel["frequency_hz"].get<std::vector<double>>() == quarter.frequency_hz);
   CHECK(channel["value"].get<std::vector<double>>() == quarter.value);
   CHECK(channel["dof"].get<std::vector<double>>() == quarter.dof);
-  CHECK(channel["ci95"][7][0].get<double>() == Approx(spectrum_interval(quarter, 7, 0.95).first));
-  CHECK(channel["ci95"][7][1].get<double>() == Approx(spectrum_interval(quarter, 7, 0.95).second));
+  CHECK(channel["ci95"][7][0].get<double>() ==
+        Approx(IntervalFactors(0.95).interval(quarter, 7).first));
+  CHECK(channel["ci95"][7][1].get<double>() ==
+        Approx(IntervalFactors(0.95).interval(quarter, 7).second));
 }
 
 TEST_CASE("psd finds lines and bins on a logarithmic axis") {

@@ -5,11 +5,15 @@
 namespace {
 enum class Fruit { apple, pear, none };
 enum class Bare { a };
+enum class Side { one, two, both };
 }  // namespace
 
 template <>
 inline constexpr auto libchar::enum_table<Fruit> =
-    libchar::enum_words<Fruit>({{Fruit::pear, "pear"}, {Fruit::apple, "apple"}});
+    std::to_array<libchar::EnumWord<Fruit>>({{Fruit::pear, "pear"}, {Fruit::apple, "apple"}});
+
+template <>
+inline constexpr auto libchar::enum_table<Side> = libchar::enum_words<Side, "one-sided two both">;
 
 using namespace libchar;
 
@@ -23,4 +27,11 @@ TEST_CASE("an enum's table gives its words, in the order of the rows, and back")
   STATIC_REQUIRE(EnumWithTable<Fruit>);
   STATIC_REQUIRE_FALSE(EnumWithTable<Bare>);
   STATIC_REQUIRE_FALSE(EnumWithTable<int>);
+}
+
+TEST_CASE("words in the order of the enum are one text") {
+  STATIC_REQUIRE(enum_table<Side>.size() == 3);
+  STATIC_REQUIRE(name_of(Side::one) == "one-sided");
+  STATIC_REQUIRE(find_enum<Side>("both") == Side::both);
+  CHECK(words_of<Side>() == std::vector<std::string>{"one-sided", "two", "both"});
 }

@@ -21,8 +21,8 @@ enum class Socket { e14, e27 };
 }  // namespace
 
 template <>
-inline constexpr auto libchar::enum_table<Socket> = enum_words<Socket>({{Socket::e27, "E27"},
-                                                                        {Socket::e14, "E14"}});
+inline constexpr auto libchar::enum_table<Socket> =
+    std::to_array<EnumWord<Socket>>({{Socket::e27, "E27"}, {Socket::e14, "E14"}});
 
 namespace {
 

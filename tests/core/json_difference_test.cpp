@@ -1,10 +1,10 @@
 // Where two documents differ.
 
-#include "libchar/core/document/json_difference.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "libchar/core/document/json.hpp"
 
 using namespace libchar;
 

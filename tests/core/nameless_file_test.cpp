@@ -1,5 +1,3 @@
-#include "libchar/core/file/nameless_file.hpp"
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -7,6 +5,7 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "libchar/core/file/unfinished_files.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "libchar/core/table/detail/latex.hpp"
+#include "libchar/core/table/detail/formats.hpp"
 
 using namespace libchar;
 using Catch::Contains;

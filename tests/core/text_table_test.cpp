@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "libchar/core/table/detail/text_table.hpp"
+#include "libchar/core/table/detail/formats.hpp"
 
 using libchar::text_table;
 using libchar::width_of;

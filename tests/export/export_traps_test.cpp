@@ -11,7 +11,7 @@
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/utf8.hpp"
-#include "libchar/model/model_reader.hpp"
+#include "libchar/model/model_file.hpp"
 #include "tests/export/imu_models.hpp"
 
 using namespace libchar;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/allan/gauss_markov_curves.hpp"
+#include "libchar/allan/noise_curves.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/noise_fit.hpp"

@@ -8,7 +8,6 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/model/model_reader.hpp"
 
 using namespace libchar;
 

@@ -9,7 +9,6 @@
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/utf8.hpp"
-#include "libchar/model/model_reader.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

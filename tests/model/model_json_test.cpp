@@ -1,4 +1,3 @@
-#include "libchar/model/model_json.hpp"
 
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -7,7 +6,7 @@
 #include "libchar/core/document/fields.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/model/model_fields.hpp"
-#include "libchar/model/model_reader.hpp"
+#include "libchar/model/model_file.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

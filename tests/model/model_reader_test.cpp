@@ -1,4 +1,3 @@
-#include "libchar/model/model_reader.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

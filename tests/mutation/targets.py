@@ -13,7 +13,7 @@ TARGETS = [
     ("libchar/log/read.cpp", ["log"], 1),
     # Numerics
     ("libchar/allan/allan_pyramid.cpp", ["allan"], 3),
-    ("libchar/allan/detail/tau_grid.cpp", ["allan"], 2),
+    ("libchar/allan/allan_deviation.cpp", ["allan"], 2),
     ("libchar/allan/detail/equivalent_dof.cpp", ["allan"], 2),
     ("libchar/allan/*.cpp", ["allan"], 1),
     ("libchar/allan/detail/*.cpp", ["allan"], 1),

@@ -9,7 +9,6 @@
 #include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fit/record/power_sums.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/model/model_reader.hpp"
 #include "libchar/simulate/random.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "tests/properties/generate.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "libchar/fusion/registry.hpp"
-#include "libchar/replay/view/algorithm_words.hpp"
+#include "libchar/replay/view/words.hpp"
 #include "tests/support/docs_table.hpp"
 
 using namespace libchar;

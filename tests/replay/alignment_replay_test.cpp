@@ -6,7 +6,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/replay/replay.hpp"
 #include "libchar/report/json/replay_json.hpp"
-#include "libchar/report/replay/replay_markdown.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "libchar/scene/text/scene_writer.hpp"
 #include "tests/replay/scene_text.hpp"
 

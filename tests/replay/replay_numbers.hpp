@@ -6,6 +6,7 @@
 #include <string>
 
 #include "libchar/replay/replay.hpp"
+#include "libchar/replay/view/verdict.hpp"
 
 namespace test {
 
@@ -16,6 +17,13 @@ inline const AlgorithmResult& named(const ReplayResult& result, const std::strin
     if (a.label == label) return a;
   FAIL("no algorithm " << label);
   return result.algorithms[0];
+}
+
+// All sentences in a row.
+inline std::string verdict_of(const ReplayResult& result, bool costs = true) {
+  std::string out;
+  for (const std::string& sentence : verdict_sentences(result, costs)) out += sentence + " ";
+  return out;
 }
 
 // Everything but what a clock or the heap said.

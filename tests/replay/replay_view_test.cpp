@@ -9,6 +9,7 @@
 #include "libchar/replay/detail/tracks/thinned_tracks.hpp"
 #include "libchar/replay/view/verdict.hpp"
 #include "libchar/report/json/replay_json.hpp"
+#include "tests/replay/replay_numbers.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
 using namespace libchar;
@@ -154,21 +155,21 @@ TEST_CASE("replay: the front holds exactly what no method beats in both") {
 
 TEST_CASE("replay verdict: names the best, who needs a teacher, and who is not told apart") {
   ReplayResult r = test::synthetic_replay();
-  CHECK_THAT(replay_verdict(r, true), Contains("Use mean: RMSE 0.033 rad/s"));
-  CHECK_THAT(replay_verdict(r, true), Contains("3 ns a sample"));
-  CHECK_THAT(replay_verdict(r, false), !Contains("ns a sample"));
+  CHECK_THAT(test::verdict_of(r, true), Contains("Use mean: RMSE 0.033 rad/s"));
+  CHECK_THAT(test::verdict_of(r, true), Contains("3 ns a sample"));
+  CHECK_THAT(test::verdict_of(r, false), !Contains("ns a sample"));
   // A trained method wins: the best that needs no reference is named as well.
   for (AlgorithmResult& a : r.algorithms)
     if (a.label == "least-squares") a.rmse = 0.02;
   test::judge(r);
-  CHECK_THAT(replay_verdict(r), Contains("Use least-squares"));
-  CHECK_THAT(replay_verdict(r), Contains("of the methods that need none mean is best"));
-  CHECK_THAT(replay_verdict(r), Contains("Every other method is worse"));
+  CHECK_THAT(test::verdict_of(r), Contains("Use least-squares"));
+  CHECK_THAT(test::verdict_of(r), Contains("of the methods that need none mean is best"));
+  CHECK_THAT(test::verdict_of(r), Contains("Every other method is worse"));
   // A bound is never recommended, however good.
   for (AlgorithmResult& a : r.algorithms)
     if (a.bound) a.rmse = 0.001;
   test::judge(r);
-  CHECK_THAT(replay_verdict(r), Contains("Use least-squares"));
-  CHECK_THAT(replay_verdict(test::without_reference()), Contains("all sensors share"));
-  CHECK_THAT(replay_verdict(test::nothing_scored()), Contains("No algorithm has a score"));
+  CHECK_THAT(test::verdict_of(r), Contains("Use least-squares"));
+  CHECK_THAT(test::verdict_of(test::without_reference()), Contains("all sensors share"));
+  CHECK_THAT(test::verdict_of(test::nothing_scored()), Contains("No algorithm has a score"));
 }

@@ -58,12 +58,12 @@ TEST_CASE("verdict: whether fusion pays is said against the best single sensor, 
       replay(bench.read(scene_of(5, "reference: truth\nalgorithms: [mean, median]\n")));
   REQUIRE(result.best_sensor == std::size_t{2});
   CHECK(result.best_over_sensor->high < 0.6);
-  CHECK_THAT(replay_verdict(result, false),
+  CHECK_THAT(test::verdict_of(result, false),
              StartsWith("Use mean") && Contains("Fusion pays") && Contains("below that of s3"));
 
   bench.put("array.csv", array_log({{1}, {1}, {0.1}, {1}, {1}}, 8000, 2));
   result = replay(bench.read(scene_of(5, "reference: truth\nalgorithms: [mean]\n")));
-  CHECK_THAT(replay_verdict(result, false),
+  CHECK_THAT(test::verdict_of(result, false),
              StartsWith("Fusion does not pay") && Contains("use that sensor alone"));
 }
 
@@ -91,7 +91,7 @@ TEST_CASE("verdict: offsets between the sensors are asked for, not compared") {
   ReplayResult result = replay(bench.read(scene_of(4, "algorithms: [mean, median]\n")));
   CHECK(result.offsets_decide);
   CHECK_FALSE(result.best);
-  CHECK_THAT(replay_verdict(result, false),
+  CHECK_THAT(test::verdict_of(result, false),
              StartsWith("No method is recommended") && Contains("a stretch at rest"));
   result = replay(bench.read(scene_of(4, "rest: [0, 10]\nalgorithms: [mean, median]\n")));
   CHECK_FALSE(result.offsets_decide);
@@ -105,7 +105,7 @@ TEST_CASE("verdict: one per cent is no difference") {
       replay(bench.read(scene_of(4, "reference: truth\nalgorithms: [mean, minque]\n")));
   CHECK(named(result, "mean").as_good_as_best);
   CHECK(named(result, "minque").as_good_as_best);
-  CHECK_THAT(replay_verdict(result, false), Contains("Within one per cent of it"));
+  CHECK_THAT(test::verdict_of(result, false), Contains("Within one per cent of it"));
 }
 
 TEST_CASE("verdict: a record of a few instants tells no method from another") {
@@ -121,6 +121,6 @@ TEST_CASE("verdict: a record of a few instants tells no method from another") {
     REQUIRE(result.best);
     for (const AlgorithmResult& a : result.algorithms)
       if (a.ran && std::isfinite(a.rmse)) CHECK(a.as_good_as_best);
-    CHECK(replay_verdict(result).find("long enough to tell") == std::string::npos);
+    CHECK(test::verdict_of(result).find("long enough to tell") == std::string::npos);
   }
 }

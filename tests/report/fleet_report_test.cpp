@@ -15,7 +15,7 @@
 #include "libchar/core/text/csv_cell.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/report/compare/fleet_comparison_text.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "libchar/report/detail/charts.hpp"
 #include "libchar/report/detail/npz_writer.hpp"
 #include "libchar/report/text/coefficient_table.hpp"

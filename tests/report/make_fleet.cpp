@@ -8,7 +8,7 @@
 #include <string>
 
 #include "libchar/core/file/whole_file.hpp"
-#include "libchar/report/compare/fleet_comparison_text.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 #include "tests/lot/made_fleet.hpp"
 

@@ -10,7 +10,7 @@
 #include "libchar/replay/replay.hpp"
 #include "libchar/report/html/replay_html.hpp"
 #include "libchar/report/json/replay_json.hpp"
-#include "libchar/report/replay/replay_markdown.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

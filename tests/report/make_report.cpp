@@ -10,8 +10,8 @@
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/html/html_report.hpp"
-#include "libchar/report/json/csv_curves.hpp"
 #include "libchar/report/json/json_report.hpp"
+#include "libchar/report/text/curves_text.hpp"
 #include "tests/report/synthetic.hpp"
 
 int main(int argc, char** argv) {

@@ -11,8 +11,8 @@
 #include "libchar/export/consumers.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/report/html/html_report.hpp"
-#include "libchar/report/json/csv_curves.hpp"
 #include "libchar/report/json/json_report.hpp"
+#include "libchar/report/text/curves_text.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

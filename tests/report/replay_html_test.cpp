@@ -4,7 +4,7 @@
 #include <regex>
 
 #include "libchar/report/detail/assets.hpp"
-#include "libchar/report/replay/replay_markdown.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

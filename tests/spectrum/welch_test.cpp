@@ -329,15 +329,15 @@ TEST_CASE("intervals cover at the stated rate and match chi-square tables") {
   const Spectrum s = welch(white_samples(1U << 18U, 6), 2, welch_segments(4096));
   int inside = 0, count = 0;
   for (std::size_t k = 2; k < 2048; k += 3, ++count) {
-    const auto [low, high] = spectrum_interval(s, k, 0.95);
+    const auto [low, high] = IntervalFactors(0.95).interval(s, k);
     inside += low <= 1 && 1 <= high;
   }
   CHECK(inside == Approx(0.95 * count).margin(4 * std::sqrt(0.0475 * count)));
   Spectrum root = s;
   root.scaling = Scaling::lsd;
   root.value[7] = std::sqrt(s.value[7]);
-  CHECK(spectrum_interval(root, 7, 0.95).first ==
-        Approx(std::sqrt(spectrum_interval(s, 7, 0.95).first)));
+  CHECK(IntervalFactors(0.95).interval(root, 7).first ==
+        Approx(std::sqrt(IntervalFactors(0.95).interval(s, 7).first)));
 }
 
 TEST_CASE("threads change no bit") {

@@ -9,7 +9,7 @@
 #include "help/help_page.hpp"
 #include "help/man_page.hpp"
 #include "libchar/core/document/json.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/report/json/schemas.hpp"
 
@@ -26,13 +26,11 @@ const VerbUsage& named_verb(const ProgramUsage& program, const std::string& name
     if (verb.name == name) return verb;
     names.push_back(verb.name);
   }
-  throw Error({ErrorKind::usage,
-               "E0203",
-               program.name,
-               "unknown verb",
-               name,
-               libchar::did_you_mean(libchar::nearest(name, names),
-                                     fmt::format("the verbs are {}", fmt::join(names, ", ")))});
+  throw libchar::usage_error("E0203", program.name)
+      .says("unknown verb")
+      .got(name)
+      .hint(libchar::did_you_mean(libchar::nearest(name, names),
+                                  fmt::format("the verbs are {}", fmt::join(names, ", "))));
 }
 
 std::string_view kind_word(ValueKind kind) {
@@ -99,25 +97,20 @@ std::string schema_json(const std::vector<std::string>& words) {
   for (const auto& [file, schema] : all.items()) names.push_back(file.substr(0, file.find('.')));
   if (std::find(names.begin(), names.end(), words[1]) != names.end())
     return libchar::dump_json(all[words[1] + ".schema.json"]);
-  throw Error({ErrorKind::usage,
-               "E0202",
-               "--generate schema",
-               fmt::format("expected one of {}", fmt::join(names, ", ")),
-               words[1],
-               libchar::did_you_mean(libchar::nearest(words[1], names))});
+  throw libchar::usage_error("E0202", "--generate schema")
+      .says("expected one of {}", fmt::join(names, ", "))
+      .got(words[1])
+      .hint(libchar::did_you_mean(libchar::nearest(words[1], names)));
 }
 
 std::string artefact(const ProgramUsage& program, const std::vector<std::string>& words) {
   static const std::vector<std::string> kKinds = {"man", "bash", "zsh", "fish", "json", "schema"};
   const std::string kind = words.empty() ? "" : words[0];
   if (words.size() > 2 || (words.size() == 2 && kind != "man" && kind != "schema"))
-    throw Error(
-        {ErrorKind::usage,
-         "E0204",
-         "--generate",
-         "one argument too many",
-         words.back(),
-         "--generate man VERB or schema NAME, or --generate bash, zsh, fish or json alone"});
+    throw libchar::usage_error("E0204", "--generate")
+        .says("one argument too many")
+        .got(words.back())
+        .hint("--generate man VERB or schema NAME, or --generate bash, zsh, fish or json alone");
   if (kind == "man")
     return words.size() == 1 ? program_man_page(program)
                              : verb_man_page(program, named_verb(program, words[1]));
@@ -126,12 +119,10 @@ std::string artefact(const ProgramUsage& program, const std::vector<std::string>
   if (kind == "fish") return fish_completion(program);
   if (kind == "json") return usage_json(program);
   if (kind == "schema") return schema_json(words);
-  throw Error({ErrorKind::usage,
-               "E0202",
-               "--generate",
-               fmt::format("expected one of {}", fmt::join(kKinds, ", ")),
-               kind,
-               libchar::did_you_mean(libchar::nearest(kind, kKinds))});
+  throw libchar::usage_error("E0202", "--generate")
+      .says("expected one of {}", fmt::join(kKinds, ", "))
+      .got(kind)
+      .hint(libchar::did_you_mean(libchar::nearest(kind, kKinds)));
 }
 
 }  // namespace
@@ -148,7 +139,7 @@ std::optional<std::string> generated(const ProgramUsage& program,
   if (first == "help") {
     if (command.size() == 2 || asked) return program_help(program, width);
     if (command.size() > 3)
-      throw Error({ErrorKind::usage, "E0204", "help", "one argument too many", command[3], ""});
+      throw libchar::usage_error("E0204", "help").says("one argument too many").got(command[3]);
     std::string group = group_help(program, command[2], width);
     return group.empty() ? verb_help(program, named_verb(program, command[2]), width) : group;
   }

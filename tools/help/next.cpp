@@ -13,7 +13,7 @@
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/log_files.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/export/exports.hpp"
 
 namespace sensorchar {

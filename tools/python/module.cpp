@@ -14,13 +14,14 @@
 #include "arrays.hpp"
 #include "libchar/characterize/curves/log_spectra.hpp"
 #include "libchar/characterize/judgement.hpp"
-#include "libchar/core/document/finding_fields.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/libchar.hpp"
 #include "libchar/log/recording_json.hpp"
-#include "libchar/report/replay/replay_markdown.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "libchar/report/report_files.hpp"
 #include "libchar/scene/recorded_scene.hpp"
 #include "libchar/scene/text/typed_text.hpp"
@@ -95,12 +96,7 @@ class Given {
   [[noreturn]] static void refuse(const char* name,
                                   const std::string& got,
                                   const std::vector<std::string>& words) {
-    throw Error({ErrorKind::usage,
-                 "E0202",
-                 name,
-                 fmt::format("expected one of {}", fmt::join(words, ", ")),
-                 got,
-                 ""});
+    throw usage_error("E0202", name).says("expected one of {}", fmt::join(words, ", ")).got(got);
   }
 
  private:

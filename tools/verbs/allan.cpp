@@ -6,13 +6,12 @@
 
 #include "analysis_options.hpp"
 #include "libchar/characterize/log_devices.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/formats.hpp"
-#include "libchar/report/text/allan_text.hpp"
-#include "libchar/report/text/devices_text.hpp"
+#include "libchar/report/text/curves_text.hpp"
 #include "reading_options.hpp"
 #include "terminal_plot.hpp"
 #include "verb.hpp"
@@ -42,12 +41,9 @@ DynamicTimes read_dynamic(const std::string& text) {
 LogAllanOptions devices_options(const AllanVerb& verb) {
   const CharacterizeOptions all = finish(verb.analysis);
   if (!all.more_types.empty())
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "--type",
-                 "one statistic at a time goes with --hat, --hat-pairs and --dynamic",
-                 std::string(name_of(all.more_types[0])),
-                 ""});
+    throw usage_error("E0205", "--type")
+        .says("one statistic at a time goes with --hat, --hat-pairs and --dynamic")
+        .got(std::string(name_of(all.more_types[0])));
   LogAllanOptions options{all.reading, all.data, all.nominal_frequency, all.allan};
   if (all.full_overlap) options.allan.work_a_point = 0;
   return options;
@@ -110,14 +106,11 @@ void run_allan(Session& session, const AllanVerb& verb) {
     for (const AllanCurve& curve : c.more_allan) take(curve);
   }
   if (!any)
-    throw Error({ErrorKind::numeric,
-                 "E0710",
-                 verb.log,
-                 "no channel gives an Allan deviation",
-                 "",
-                 result.log.time.rate_hz > 0
-                     ? ""
-                     : "the sampling rate is not known: a log without time stamps needs --rate"});
+    throw numeric_error("E0710", verb.log)
+        .says("no channel gives an Allan deviation")
+        .hint(result.log.time.rate_hz > 0
+                  ? ""
+                  : "the sampling rate is not known: a log without time stamps needs --rate");
   std::string text;
   if (verb.plot) {
     std::vector<SourceCurve> drawn;

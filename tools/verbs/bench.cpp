@@ -13,10 +13,9 @@
 #include "heap_meter.hpp"
 #include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/bench_inputs.hpp"
-#include "libchar/benchmark/bench_report.hpp"
-#include "libchar/core/document/document_file.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fusion/registry.hpp"
@@ -51,12 +50,10 @@ const std::vector<std::string> kBenchParts = {
 void check_parts(const BenchVerb& verb) {
   for (const std::string& part : verb.parts)
     if (std::find(kBenchParts.begin(), kBenchParts.end(), part) == kBenchParts.end())
-      throw Error({ErrorKind::usage,
-                   "E0202",
-                   "--parts",
-                   "no such part of a benchmark",
-                   part,
-                   did_you_mean(nearest(part, kBenchParts), first_names(kBenchParts))});
+      throw usage_error("E0202", "--parts")
+          .says("no such part of a benchmark")
+          .got(part)
+          .hint(did_you_mean(nearest(part, kBenchParts), first_names(kBenchParts)));
 }
 
 /// Before anything is measured: fusion comes late, and a slip must not cost the minutes before it.
@@ -104,21 +101,14 @@ void check_options_are_used(const BenchVerb& verb, const BenchInputs& inputs) {
     if (part != "scaling" && verb.wants(part))
       hint = fmt::format("give a {}, or no files for those that are built in",
                          part == "fusion" ? "scene" : "model or a log");
-    throw Error(
-        {ErrorKind::usage,
-         "E0205",
-         option.flag,
-         fmt::format("it is about {}, which is not done here", fmt::join(option.parts, " and ")),
-         "",
-         hint});
+    throw usage_error("E0205", option.flag)
+        .says("it is about {}, which is not done here", fmt::join(option.parts, " and "))
+        .hint(hint);
   }
   if (verb.tau_s && !verb.target)
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "--at",
-                 "it is the averaging time of a --target, and there is none",
-                 "",
-                 "--target DEVIATION"});
+    throw usage_error("E0205", "--at")
+        .says("it is the averaging time of a --target, and there is none")
+        .hint("--target DEVIATION");
 }
 
 // Of the files, or what is built in where there are none. A part that nothing was given for is left out.
@@ -196,32 +186,25 @@ BenchReport measured(Session& session, const BenchVerb& verb, const BenchInputs&
 void refuse_worse(const BenchChanges& changes, double tolerance, const std::string& older) {
   const std::vector<BenchChange> worse = changes.worse(tolerance);
   if (worse.empty()) return;
-  throw Error({ErrorKind::check,
-               "E0969",
-               older,
-               fmt::format("{} figures are worse than there by more than {} %, the first {}",
-                           worse.size(),
-                           100 * tolerance,
-                           worse[0].what),
-               "",
-               "other work on the machine? run again; --tolerance accepts more"});
+  throw Refusal(ErrorKind::check, "E0969", older)
+      .says("{} figures are worse than there by more than {} %, the first {}",
+            worse.size(),
+            100 * tolerance,
+            worse[0].what)
+      .hint("other work on the machine? run again; --tolerance accepts more");
 }
 
 void refuse_wrong(const StressBench& stress) {
   const std::size_t wrong = stress.count(StressOutcome::wrong);
   if (wrong == 0) return;
   const StressCell& first = stress.cells.front();
-  throw Error({ErrorKind::check,
-               "E0971",
-               "",
-               fmt::format("{} of {} results under stress are wrong, the first: {}, {}: {}",
-                           wrong,
-                           stress.cells.size(),
-                           first.subject,
-                           first.input,
-                           first.what),
-               "",
-               ""});
+  throw Refusal(ErrorKind::check, "E0971")
+      .says("{} of {} results under stress are wrong, the first: {}, {}: {}",
+            wrong,
+            stress.cells.size(),
+            first.subject,
+            first.input,
+            first.what);
 }
 
 void run_bench(Session& session, BenchVerb& verb) {
@@ -246,12 +229,9 @@ void run_bench(Session& session, BenchVerb& verb) {
   const BenchReport report = measured(session, verb, inputs);
   if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design &&
       !report.stress)
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "--parts",
-                 "nothing to do: models and logs are for characterization, scenes for fusion",
-                 "",
-                 "other files, or other parts"});
+    throw usage_error("E0205", "--parts")
+        .says("nothing to do: models and logs are for characterization, scenes for fusion")
+        .hint("other files, or other parts");
   std::vector<std::string> removed;
   if (!verb.folder.empty())
     removed =

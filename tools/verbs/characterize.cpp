@@ -16,12 +16,11 @@
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/limits.hpp"
 #include "libchar/characterize/settings.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_name.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/formats.hpp"
 #include "libchar/report/html/fleet_report.hpp"
@@ -279,27 +278,14 @@ void foresee_reports(const CharacterizeVerb& verb) {
 
 void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {
   if (!outcome.any_fit)
-    throw Error({ErrorKind::numeric,
-                 "E0711",
-                 verb.logs[0],
-                 "no channel could be fitted; the report says why",
-                 "",
-                 ""});
+    throw numeric_error("E0711", verb.logs[0])
+        .says("no channel could be fitted; the report says why");
   if (!outcome.agrees)
-    throw Error(
-        {ErrorKind::check,
-         "E0713",
-         verb.logs[0],
-         "a simulation of the model does not agree with the recording; the report says where",
-         "",
-         ""});
+    throw Refusal(ErrorKind::check, "E0713", verb.logs[0])
+        .says("a simulation of the model does not agree with the recording; the report says where");
   if (!outcome.exceeded.empty())
-    throw Error({ErrorKind::check,
-                 "E0714",
-                 verb.limits,
-                 fmt::format("{}", fmt::join(outcome.exceeded, " ")),
-                 "",
-                 ""});
+    throw Refusal(ErrorKind::check, "E0714", verb.limits)
+        .says("{}", fmt::join(outcome.exceeded, " "));
 }
 
 void run_characterize(Session& session, CharacterizeVerb verb) {
@@ -308,8 +294,7 @@ void run_characterize(Session& session, CharacterizeVerb verb) {
   if (verb.folder.empty() && verb.lot) verb.folder = "lot-report";
   refuse_standard_output("--output", verb.folder);
   if (verb.pool && verb.logs.size() < 2)
-    throw Error(
-        {ErrorKind::usage, "E0205", "--pool", "needs two runs of the sensor at least", "", ""});
+    throw usage_error("E0205", "--pool").says("needs two runs of the sensor at least");
   foresee_reports(verb);
   std::optional<NoiseLimits> limits;
   if (!verb.limits.empty()) limits = read_limits_file(verb.limits);

@@ -8,15 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/compare/characterization_check.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/text_table.hpp"
 #include "libchar/log/recording_json.hpp"
-#include "libchar/model/model_reader.hpp"
+#include "libchar/model/model_file.hpp"
 #include "libchar/replay/comparison.hpp"
 #include "libchar/replay/comparison_check.hpp"
-#include "libchar/report/compare/characterization_comparison_text.hpp"
 #include "libchar/report/compare/comparison_text.hpp"
 #include "verb.hpp"
 
@@ -50,7 +49,7 @@ Json document(const Session& session, const Comparison& c, const std::vector<std
 [[noreturn]] void refuse_failed(const std::vector<std::string>& failed) {
   std::string what = failed[0];
   for (std::size_t i = 1; i < failed.size(); ++i) what += "; " + failed[i];
-  throw Error({ErrorKind::check, "E0924", "--fail-if", what, "", ""});
+  throw Refusal(ErrorKind::check, "E0924", "--fail-if").says(what);
 }
 
 void compare_two_replays(Session& session, const CompareVerb& verb) {
@@ -73,12 +72,8 @@ void compare_two_replays(Session& session, const CompareVerb& verb) {
 
 void compare_two_characterizations(Session& session, const CompareVerb& verb) {
   if (verb.unlike)
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "--unlike",
-                 "goes with reports of replay, and these are characterizations",
-                 "",
-                 ""});
+    throw usage_error("E0205", "--unlike")
+        .says("goes with reports of replay, and these are characterizations");
   std::vector<GrowthCheck> checks;
   for (const std::string& text : verb.checks) checks.push_back(parse_characterization_check(text));
   const ReportedCharacterization a = read_characterization_report(verb.a);  // A is refused before B

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "help/error_page.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/finding.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "verb.hpp"
 
@@ -53,12 +53,10 @@ std::vector<KindOfError> kinds_of_errors() {
   std::vector<std::string> known;
   for (const FindingKind& one : finding_kinds()) known.emplace_back(one.code);
   for (const KindOfError& one : kinds_of_errors()) known.emplace_back(one.code);
-  throw Error({ErrorKind::usage,
-               "E0202",
-               "explain",
-               "no such finding or error",
-               code,
-               did_you_mean(nearest(code, known), "sensorchar explain lists all findings")});
+  throw usage_error("E0202", "explain")
+      .says("no such finding or error")
+      .got(code)
+      .hint(did_you_mean(nearest(code, known), "sensorchar explain lists all findings"));
 }
 
 Explained chosen(const std::vector<std::string>& codes) {

@@ -9,10 +9,10 @@
 #include "analysis_options.hpp"
 #include "libchar/characterize/curves/curve_table_fit.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_name.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/text_table.hpp"
 #include "libchar/fit/fit_json.hpp"
@@ -118,14 +118,11 @@ void run_fit(Session& session, const FitVerb& verb) {
   session.terminal.clear();
   report_warnings(session, log);
   if (fits.empty())
-    throw Error({ErrorKind::numeric,
-                 "E0711",
-                 verb.input,
-                 "no channel could be fitted",
-                 "",
-                 log.time.rate_hz > 0
-                     ? ""
-                     : "the sampling rate is not known: a log without time stamps needs --rate"});
+    throw numeric_error("E0711", verb.input)
+        .says("no channel could be fitted")
+        .hint(log.time.rate_hz > 0
+                  ? ""
+                  : "the sampling rate is not known: a log without time stamps needs --rate");
   if (!verb.output.empty() || !verb.models.empty()) refuse_strict(session);
   std::string text;
   if (verb.json) {
@@ -153,13 +150,8 @@ void run_fit(Session& session, const FitVerb& verb) {
   if (!verb.models.empty()) write_models(verb, fits, log);
   for (const ChannelFit& c : fits) {
     if (!c.fit.converged)
-      throw Error(
-          {ErrorKind::numeric,
-           "E0712",
-           verb.input,
-           fmt::format("the fit of {} did not converge; its result is marked", c.channel.name),
-           "",
-           ""});
+      throw numeric_error("E0712", verb.input)
+          .says("the fit of {} did not converge; its result is marked", c.channel.name);
   }
 }
 

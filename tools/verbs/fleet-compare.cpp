@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/lot/device_batches.hpp"
-#include "libchar/report/compare/fleet_comparison_text.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {
@@ -28,13 +28,11 @@ struct CompareFleetsVerb {
 };
 
 [[noreturn]] void refuse_sides() {
-  throw Error({ErrorKind::usage,
-               "E0205",
-               "fleet compare",
-               "two fleets are compared, or two batches of one",
-               "",
-               "sensorchar fleet compare A B, or sensorchar fleet compare DIR --batches OLD,NEW "
-               "(where a name has a comma: --batches OLD --batches NEW)"});
+  throw usage_error("E0205", "fleet compare")
+      .says("two fleets are compared, or two batches of one")
+      .hint(
+          "sensorchar fleet compare A B, or sensorchar fleet compare DIR --batches OLD,NEW (where "
+          "a name has a comma: --batches OLD --batches NEW)");
 }
 
 /// "OLD,NEW", or one a word.
@@ -82,12 +80,10 @@ std::vector<DeviceRecord> of_batch(const std::vector<DeviceRecord>& records,
   std::set<std::string> titles;
   for (const std::string& one : batches.batch) titles.insert(batch_title(one));
   if (out.empty())
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 fleet,
-                 "no device is of this batch",
-                 batch,
-                 fmt::format("it has {}", fmt::join(titles, ", "))});
+    throw usage_error("E0205", fleet)
+        .says("no device is of this batch")
+        .got(batch)
+        .hint("it has {}", fmt::join(titles, ", "));
   return out;
 }
 
@@ -95,12 +91,10 @@ Sides sides_of_batches(Session& session,
                        const std::string& folder,
                        const std::vector<std::string>& names) {
   if (names[0] == names[1])
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "--batches",
-                 "a batch is compared with another one",
-                 names[0],
-                 "name two: its devices would count twice"});
+    throw usage_error("E0205", "--batches")
+        .says("a batch is compared with another one")
+        .got(names[0])
+        .hint("name two: its devices would count twice");
   const std::vector<DeviceRecord> records = records_of({folder, read_plan(folder)}, session);
   const DeviceBatches batches = device_batches(records);
   Sides out;

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/shell_word.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/jobs.hpp"
 #include "libchar/fleet/merge.hpp"

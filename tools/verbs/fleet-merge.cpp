@@ -8,9 +8,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
@@ -42,13 +42,10 @@ void add_limit_files(const FleetPlan& plan, std::map<std::string, std::string>& 
     if (one.limits.empty()) continue;
     const auto [at, fresh] = files.emplace(one.type, one.limits);
     if (!fresh && !same_content(at->second, one.limits))
-      throw Error(
-          {ErrorKind::input,
-           "E0793",
-           one.limits,
-           fmt::format("devices of the type \"{}\" have limits in two files", printable(one.type)),
-           at->second,
-           "give them another `type` in the manifest, or the same limits"});
+      throw input_error("E0793", one.limits)
+          .says("devices of the type \"{}\" have limits in two files", printable(one.type))
+          .got(at->second)
+          .hint("give them another `type` in the manifest, or the same limits");
   }
 }
 

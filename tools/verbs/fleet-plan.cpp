@@ -8,7 +8,6 @@
 #include "analysis_options.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/shell_word.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/status.hpp"

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/shell_word.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"

@@ -5,10 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
-#include "libchar/report/replay/fuse_report.hpp"
+#include "libchar/core/refusal.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 #include "writing_options.hpp"
@@ -29,12 +29,10 @@ void add_map(const FuseVerb& verb, libchar::FuseOptions& options) {
   for (const std::string& text : verb.map) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw libchar::Error({libchar::ErrorKind::usage,
-                            "E0935",
-                            "--map",
-                            "expected SENSOR=CHANNEL",
-                            text,
-                            "--map gyro1=wx"});
+      throw libchar::usage_error("E0935", "--map")
+          .says("expected SENSOR=CHANNEL")
+          .got(text)
+          .hint("--map gyro1=wx");
     options.map.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
 }

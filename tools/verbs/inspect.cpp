@@ -10,7 +10,7 @@
 
 #include "help/next.hpp"
 #include "libchar/core/text/quantity_text.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/report/text/inspection_text.hpp"
 #include "reading_options.hpp"

@@ -7,15 +7,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/text_table.hpp"
 #include "libchar/export/exports.hpp"
 #include "libchar/log/recording_json.hpp"
-#include "libchar/model/model_files.hpp"
-#include "libchar/model/model_json.hpp"
-#include "libchar/model/model_reader.hpp"
+#include "libchar/model/model_file.hpp"
 #include "libchar/report/text/model_text.hpp"
 #include "verb.hpp"
 
@@ -52,12 +50,10 @@ AxisOverrides overrides(const std::vector<std::string>& places) {
   for (const std::string& text : places) {
     const std::size_t sign = text.rfind('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == text.size())
-      throw Error({ErrorKind::usage,
-                   "E0581",
-                   "--axis",
-                   "expected CHANNEL=PLACE",
-                   text,
-                   "such as --axis imu_3=gx"});
+      throw usage_error("E0581", "--axis")
+          .says("expected CHANNEL=PLACE")
+          .got(text)
+          .hint("such as --axis imu_3=gx");
     out.emplace_back(text.substr(0, sign), text.substr(sign + 1));
   }
   return out;
@@ -138,12 +134,9 @@ void run_summary(const Session& session, const ModelVerb& verb) {
 void run_model(Session& session, ModelVerb& verb) {
   if (verb.list) return print_targets(session, verb.json);
   if (verb.files.empty())
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "model",
-                 "FILE is required",
-                 "",
-                 "sensorchar model --list names the targets"});
+    throw usage_error("E0205", "model")
+        .says("FILE is required")
+        .hint("sensorchar model --list names the targets");
   foresee_output(verb.output, verb.files, verb.force);
   verb.options.axis = overrides(verb.places);
   if (verb.target.empty()) return run_summary(session, verb);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/text.hpp"
@@ -39,13 +39,12 @@ double length_mm(const std::string& flag, const std::string& text) {
     const auto value = parse_double(text.substr(0, text.size() - unit.size()));
     if (value && *value > 0) return *value * factor;
   }
-  throw Error({ErrorKind::usage,
-               "E0981",
-               flag,
-               "a length was expected: a number above zero with mm, cm, in or pt, or one-column, "
-               "two-columns",
-               text,
-               "such as 85mm"});
+  throw usage_error("E0981", flag)
+      .says(
+          "a length was expected: a number above zero with mm, cm, in or pt, or one-column, "
+          "two-columns")
+      .got(text)
+      .hint("such as 85mm");
 }
 
 std::optional<Interval> range_of(const std::string& flag, const std::string& text) {
@@ -60,12 +59,10 @@ FigureFormat format_of(const PlotVerb& verb) {
   const std::string ending =
       dot == std::string::npos ? "" : ascii_lower(verb.output.substr(dot + 1));
   if (const auto known = find_enum<FigureFormat>(ending)) return *known;
-  throw Error({ErrorKind::usage,
-               "E0979",
-               "--output",
-               "the name ends neither in .svg nor in .pdf or .png",
-               verb.output,
-               "or say --format svg"});
+  throw usage_error("E0979", "--output")
+      .says("the name ends neither in .svg nor in .pdf or .png")
+      .got(verb.output)
+      .hint("or say --format svg");
 }
 
 void print_kinds() {
@@ -77,24 +74,17 @@ void print_kinds() {
 
 void refuse_nothing_asked(const PlotVerb& verb) {
   if (verb.files.empty())
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "plot",
-                 "FILE is required",
-                 "",
-                 "sensorchar plot --list names the figures"});
+    throw usage_error("E0205", "plot")
+        .says("FILE is required")
+        .hint("sensorchar plot --list names the figures");
   if (verb.output.empty() && verb.gnuplot.empty() && verb.csv.empty())
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "plot",
-                 "-o, --gnuplot or --csv is required: where the figure goes",
-                 "",
-                 "such as -o figure.pdf; - is standard output"});
+    throw usage_error("E0205", "plot")
+        .says("-o, --gnuplot or --csv is required: where the figure goes")
+        .hint("such as -o figure.pdf; - is standard output");
   const auto dashes =
       (verb.output == "-" ? 1 : 0) + (verb.gnuplot == "-" ? 1 : 0) + (verb.csv == "-" ? 1 : 0);
   if (dashes > 1)
-    throw Error(
-        {ErrorKind::usage, "E0205", "plot", "only one output can go to standard output", "", ""});
+    throw usage_error("E0205", "plot").says("only one output can go to standard output");
 }
 
 /// Those of a folder get their names together.

@@ -8,12 +8,11 @@
 #include "analysis_options.hpp"
 #include "libchar/characterize/curves/log_pair_spectra.hpp"
 #include "libchar/characterize/curves/log_spectra.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/log/formats.hpp"
-#include "libchar/report/text/pair_spectra_text.hpp"
-#include "libchar/report/text/spectra_text.hpp"
+#include "libchar/report/text/curves_text.hpp"
 #include "reading_options.hpp"
 #include "terminal_plot.hpp"
 #include "verb.hpp"
@@ -35,12 +34,10 @@ void run_cross(Session& session, const PsdVerb& verb) {
   const bool density = !verb.cross.empty();
   const std::vector<std::string>& pair = density ? verb.cross : verb.coherence;
   if (pair.size() != 2)
-    throw Error({ErrorKind::usage,
-                 "E0873",
-                 density ? "--cross" : "--coherence",
-                 "two channels were expected",
-                 std::to_string(pair.size()),
-                 "for example --coherence gyro_x,gyro_y"});
+    throw usage_error("E0873", density ? "--cross" : "--coherence")
+        .says("two channels were expected")
+        .got(std::to_string(pair.size()))
+        .hint("for example --coherence gyro_x,gyro_y");
   const LogCrossSpectrum cross =
       log_cross_spectrum(verb.log, pair[0], pair[1], verb.options, session.terminal);
   session.terminal.clear();

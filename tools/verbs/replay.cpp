@@ -14,19 +14,17 @@
 
 #include "heap_meter.hpp"
 #include "help/next.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/replay/fusion_file.hpp"
 #include "libchar/replay/sweep.hpp"
-#include "libchar/replay/view/algorithm_words.hpp"
 #include "libchar/replay/view/replay_view.hpp"
+#include "libchar/replay/view/words.hpp"
 #include "libchar/report/html/replay_html.hpp"
 #include "libchar/report/json/replay_json.hpp"
-#include "libchar/report/replay/replay_markdown.hpp"
 #include "libchar/report/replay/replay_text.hpp"
 #include "libchar/scene/text/scene_writer.hpp"
 #include "reading_options.hpp"
@@ -48,13 +46,6 @@ struct ReplayVerb {
   std::optional<double> window_s, budget_s;
 };
 
-[[noreturn]] void refuse_replay(const std::string& where,
-                                const std::string& what,
-                                const std::string& got = "",
-                                const std::string& hint = "") {
-  throw Error({ErrorKind::usage, "E0910", where, what, got, hint});
-}
-
 // "minque.gamma=0.99": an option of an algorithm that runs.
 void set_option(const std::string& text, std::vector<SceneAlgorithm>& algorithms) {
   const Sweep setting = parse_sweep(text, "--set", 1);
@@ -62,10 +53,10 @@ void set_option(const std::string& text, std::vector<SceneAlgorithm>& algorithms
     return algorithm.name == setting.algorithm;
   });
   if (!found)
-    refuse_replay("--set",
-                  "this algorithm is not among those that run",
-                  setting.algorithm,
-                  "--algorithms names them");
+    throw usage_error("E0910", "--set")
+        .says("this algorithm is not among those that run")
+        .got(setting.algorithm)
+        .hint("--algorithms names them");
   algorithms = swept({setting}, algorithms);
 }
 
@@ -264,7 +255,9 @@ std::vector<std::string> outputs_of(const ReplayVerb& verb) {
 void run_replay(Session& session, ReplayVerb verb) {
   if (verb.list) return print_algorithms(session, verb.json);
   if (verb.source.path.empty())
-    refuse_replay("SCENE", "which scene or recording?", "", "--list names the algorithms");
+    throw usage_error("E0910", "SCENE")
+        .says("which scene or recording?")
+        .hint("--list names the algorithms");
   const Scene scene = read_scene(verb);
   if (verb.explain) return print_plan(session, verb, scene, options_of(verb));
   if (verb.folder.empty() && verb.scene_file.empty())

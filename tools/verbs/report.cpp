@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/report/text/report_table.hpp"
 #include "verb.hpp"
 
@@ -34,12 +34,8 @@ void run_report(const ReportVerb& verb) {
   } else {
     const ReplayReport replay = read_replay_report(verb.file);
     if (!verb.channels.empty())
-      throw Error({ErrorKind::usage,
-                   "E0205",
-                   "--channel",
-                   "goes with the report of a characterization, and this is one of a replay",
-                   "",
-                   ""});
+      throw usage_error("E0205", "--channel")
+          .says("goes with the report of a characterization, and this is one of a replay");
     text = ranking_table(replay, format);
   }
   if (verb.output.empty() || verb.output == "-") return print(text);

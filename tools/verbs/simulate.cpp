@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "help/fault_help.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/whole.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
@@ -21,7 +21,7 @@
 #include "libchar/log/formats.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/log/write.hpp"
-#include "libchar/model/model_files.hpp"
+#include "libchar/model/model_file.hpp"
 #include "libchar/report/text/simulation_text.hpp"
 #include "libchar/scene/model_simulation.hpp"
 #include "libchar/scene/recorded_signal.hpp"
@@ -54,35 +54,31 @@ struct SimulateVerb {
   WritingOptions writing;
 };
 
-[[noreturn]] void refuse_simulate(const std::string& where,
-                                  const std::string& what,
-                                  const std::string& got = "",
-                                  const std::string& hint = "") {
-  throw Error({ErrorKind::usage, "E0721", where, what, got, hint});
-}
-
 void set_length(const SimulateVerb& verb, ArraySimulation& simulation) {
   if (verb.rate_hz) simulation.rate_hz = *verb.rate_hz;
   if (!(simulation.rate_hz > 0))
-    refuse_simulate(verb.sources[0], "states no sampling rate", "", "give --rate");
+    throw usage_error("E0721", verb.sources[0]).says("states no sampling rate").hint("give --rate");
   if (simulation.rate_hz < 1e-9 || simulation.rate_hz > 1e9)
-    refuse_simulate(verb.sources[0],
-                    "states a sampling rate that is not between 1e-9 and 1e9 Hz",
-                    brief_text(simulation.rate_hz, 6),
-                    "give --rate");
+    throw usage_error("E0721", verb.sources[0])
+        .says("states a sampling rate that is not between 1e-9 and 1e9 Hz")
+        .got(brief_text(simulation.rate_hz, 6))
+        .hint("give --rate");
   if (verb.samples > 0 && verb.duration_s)
-    refuse_simulate("--samples", "does not go with --duration", "", "give one of them");
+    throw usage_error("E0721", "--samples")
+        .says("does not go with --duration")
+        .hint("give one of them");
   if (verb.samples > 0) simulation.samples = std::min(verb.samples, kMostSamples);
   if (verb.duration_s)
     simulation.samples = clamped_whole<std::uint64_t>(
         std::round(*verb.duration_s * simulation.rate_hz), 0, kMostSamples);
   if (simulation.samples == 0)
-    refuse_simulate("simulate", "for how long?", "", "give --duration or --samples");
+    throw usage_error("E0721", "simulate")
+        .says("for how long?")
+        .hint("give --duration or --samples");
   if (simulation.samples == kMostSamples)
-    refuse_simulate(verb.duration_s ? "--duration" : "--samples",
-                    "more samples than a recording can have are asked for",
-                    "",
-                    "at most 1125899906842623");
+    throw usage_error("E0721", verb.duration_s ? "--duration" : "--samples")
+        .says("more samples than a recording can have are asked for")
+        .hint("at most 1125899906842623");
 }
 
 // A file of so many samples takes two bytes for each value at least.
@@ -94,14 +90,11 @@ void refuse_beyond_disk(const SimulateVerb& verb, const ArraySimulation& simulat
   const double bytes = 2.0 * static_cast<double>(simulation.samples) *
                        static_cast<double>(simulation.sensors.size());
   if (!unknown && bytes > static_cast<double>(space.available))
-    throw Error({ErrorKind::output,
-                 "E0524",
-                 verb.output,
-                 fmt::format("would take {} at least, and {} are free there",
-                             bytes_text(clamped_whole<std::uint64_t>(bytes, 0, kMostSamples)),
-                             bytes_text(space.available)),
-                 "",
-                 "fewer samples, another disk, or -o - into a program"});
+    throw output_error("E0524", verb.output)
+        .says("would take {} at least, and {} are free there",
+              bytes_text(clamped_whole<std::uint64_t>(bytes, 0, kMostSamples)),
+              bytes_text(space.available))
+        .hint("fewer samples, another disk, or -o - into a program");
 }
 
 // A recorded signal is read after the faults have been understood: that may take a while.
@@ -121,23 +114,20 @@ void refuse_mixed_units(const ArraySimulation& simulation) {
   const SimulatedSensor& first = simulation.sensors.front();
   for (const SimulatedSensor& other : simulation.sensors)
     if (unit_factor(first.model.unit, other.model.unit) != 1)
-      refuse_simulate("--truth",
-                      fmt::format("is one signal, and {} is in {}, {} in {}",
-                                  printable(first.name, 40),
-                                  printable(first.model.unit, 40),
-                                  printable(other.name, 40),
-                                  printable(other.model.unit, 40)),
-                      "",
-                      "simulate sensors of one unit together");
+      throw usage_error("E0721", "--truth")
+          .says("is one signal, and {} is in {}, {} in {}",
+                printable(first.name, 40),
+                printable(first.model.unit, 40),
+                printable(other.name, 40),
+                printable(other.model.unit, 40))
+          .hint("simulate sensors of one unit together");
 }
 
 void set_signals(const SimulateVerb& verb, ArraySimulation& simulation) {
   if (!verb.truth.empty() && simulation.truth_names.size() != 1)
-    refuse_simulate(
-        "--truth",
-        fmt::format("is one signal, and the scene has {}", simulation.truth_names.size()),
-        "",
-        "change them in the scene");
+    throw usage_error("E0721", "--truth")
+        .says("is one signal, and the scene has {}", simulation.truth_names.size())
+        .hint("change them in the scene");
   if (!verb.truth.empty()) {
     refuse_mixed_units(simulation);
     simulation.truth = {parse_signal(verb.truth, "--truth")};
@@ -173,15 +163,16 @@ void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& 
 
 // Where log and scene go; neither is an input.
 void place_outputs(SimulateVerb& verb, const Scene& scene) {
-  if (verb.output.empty()) refuse_simulate("--output", "is required", "", "-o LOG");
+  if (verb.output.empty())
+    throw usage_error("E0721", "--output").says("is required").hint("-o LOG");
   const bool scene_given = !verb.scene_path.empty();
   if (verb.scene_path.empty())
     verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
   if (!verb.no_scene && !scene_given && writes_through(verb.output))
-    refuse_simulate("--output",
-                    "beside a pipe or device there is no place for a scene",
-                    verb.output,
-                    "--no-scene, or --scene FILE");
+    throw usage_error("E0721", "--output")
+        .says("beside a pipe or device there is no place for a scene")
+        .got(verb.output)
+        .hint("--no-scene, or --scene FILE");
   std::vector<std::string> outputs = {verb.output};
   if (!verb.no_scene) outputs.push_back(verb.scene_path);
   refuse_one_name(outputs);
@@ -195,12 +186,12 @@ void place_outputs(SimulateVerb& verb, const Scene& scene) {
 // The scene that `simulate` wrote beside a log makes the log again; the scene stands already.
 void simulate_again(SimulateVerb& verb, Scene& scene) {
   if (!scene.simulated)
-    refuse_simulate(verb.sources[0], "is a scene of a recording, there is nothing to simulate");
+    throw usage_error("E0721", verb.sources[0])
+        .says("is a scene of a recording, there is nothing to simulate");
   if (!scene.simulated->simulation)
-    refuse_simulate(verb.sources[0],
-                    "holds no simulation: an older version wrote it",
-                    "",
-                    "simulate what it was made from");
+    throw usage_error("E0721", verb.sources[0])
+        .says("holds no simulation: an older version wrote it")
+        .hint("simulate what it was made from");
   scene.simulate = std::move(scene.simulated->simulation);
   if (verb.output.empty()) verb.output = scene.recording;
   if (verb.scene_path.empty() && verb.output == scene.recording) verb.no_scene = true;
@@ -225,7 +216,8 @@ Scene read_source(Session& session, SimulateVerb& verb) {
     if (!scene.simulate) simulate_again(verb, scene);
     place_outputs(verb, scene);
     if (verb.devices > 1)
-      refuse_simulate("--devices", "the scene says how many devices there are (count)");
+      throw usage_error("E0721", "--devices")
+          .says("the scene says how many devices there are (count)");
   } else {
     scene.simulate = simulation_of_models(verb.sources, {verb.rate_hz, verb.devices});
     scene.file = verb.sources[0];
@@ -285,7 +277,9 @@ void add_length_options(VerbOptions& options, SimulateVerb& verb) {
         try {
           verb.seed = parse_count(text);
         } catch (const Error&) {
-          refuse_simulate("--seed", "expected a whole number from 0 to 18446744073709551615", text);
+          throw usage_error("E0721", "--seed")
+              .says("expected a whole number from 0 to 18446744073709551615")
+              .got(text);
         }
         verb.seed_given = true;
       },

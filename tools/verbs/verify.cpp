@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document/result_check.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/version.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "rerun.hpp"
@@ -109,26 +109,20 @@ void run_again(Session& session, const VerifyVerb& verb, const std::string& docu
     print_text(rerun_text(run));
   }
   if (run.holds()) return;
-  throw Error({ErrorKind::check,
-               "E0520",
-               document,
-               "a second run gives other results",
-               "",
-               run.same_program
-                   ? "the same program wrote it: look at its inputs and at --in"
-                   : "another build wrote it, and its numbers differ beyond 8 digits"});
+  throw Refusal(ErrorKind::check, "E0520", document)
+      .says("a second run gives other results")
+      .hint(run.same_program ? "the same program wrote it: look at its inputs and at --in"
+                             : "another build wrote it, and its numbers differ beyond 8 digits");
 }
 
 void run_verify(Session& session, const VerifyVerb& verb) {
   const std::vector<ResultCheck> checks = check_results(verb.results, verb.inputs_in);
   if (!verb.again.empty()) {
     if (checks.size() != 1)
-      throw Error({ErrorKind::usage,
-                   "E0205",
-                   "--rerun",
-                   "runs one document again, and here are several",
-                   std::to_string(checks.size()),
-                   "name the document itself"});
+      throw usage_error("E0205", "--rerun")
+          .says("runs one document again, and here are several")
+          .got(std::to_string(checks.size()))
+          .hint("name the document itself");
     return run_again(session, verb, checks[0].document);
   }
   if (verb.json) {
@@ -142,12 +136,9 @@ void run_verify(Session& session, const VerifyVerb& verb) {
   const auto broken = std::find_if(
       checks.begin(), checks.end(), [](const ResultCheck& check) { return !check.holds(); });
   if (broken != checks.end())
-    throw Error({ErrorKind::check,
-                 "E0520",
-                 broken->document,
-                 "what it was written with is changed or missing",
-                 "",
-                 "run it again; inputs that lie elsewhere are found with --in"});
+    throw Refusal(ErrorKind::check, "E0520", broken->document)
+        .says("what it was written with is changed or missing")
+        .hint("run it again; inputs that lie elsewhere are found with --in");
 }
 
 std::function<void()> verify_options(VerbOptions& options, Session& session) {

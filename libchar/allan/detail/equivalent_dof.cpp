@@ -110,6 +110,28 @@ PerTerm sixth_differences(Function f, Tail tail, double m, double lag, double fa
   return value;
 }
 
+/// Same for the third difference (Hadamard): -delta6_m s(lag) / m^2.
+PerTerm hadamard_term_covariance(double m, double lag, double dt_s) {
+  // -delta6 s = -m^6 (s^(6) + m^2 s^(8)/4 + 13 m^4 s^(10)/240), 4 pi s^(6) = -24/n^4 …
+  const auto tail = [m](double n) {
+    const double v = m * m / (n * n);
+    return v * v * (24 + v * (120 + v * 1092)) / kFourPi;
+  };
+  return sixth_differences(phase_covariance, tail, m, lag, -1 / (m * m), dt_s);
+}
+
+/// Same for the second difference of the phase averaged over m points (modified Allan): delta6_m
+/// T(lag) / m^4.
+PerTerm modified_term_covariance(double m, double lag, double dt_s) {
+  // delta6 T/m^4 = m^2 (s'''' + m^2 s^(6)/4 + 13 m^4 s^(8)/240), since T'' = s up to terms of order
+  // m^-2
+  const auto tail = [m](double n) {
+    const double v = m * m / (n * n);
+    return -v * (4 + v * (6 + v * 26)) / kFourPi;
+  };
+  return sixth_differences(summed_phase_covariance, tail, m, lag, 1 / (m * m * m * m), dt_s);
+}
+
 }  // namespace
 
 PerTerm allan_term_covariance(double m1, double m2, double lag, double dt_s, bool with_flicker) {
@@ -133,25 +155,6 @@ PerTerm allan_term_covariance(double m1, double m2, double lag, double dt_s, boo
           : difference_again([&](double p) { return flicker_difference(p, small); }, n, large) *
                 scale;
   return value;
-}
-
-PerTerm hadamard_term_covariance(double m, double lag, double dt_s) {
-  // -delta6 s = -m^6 (s^(6) + m^2 s^(8)/4 + 13 m^4 s^(10)/240), 4 pi s^(6) = -24/n^4 …
-  const auto tail = [m](double n) {
-    const double v = m * m / (n * n);
-    return v * v * (24 + v * (120 + v * 1092)) / kFourPi;
-  };
-  return sixth_differences(phase_covariance, tail, m, lag, -1 / (m * m), dt_s);
-}
-
-PerTerm modified_term_covariance(double m, double lag, double dt_s) {
-  // delta6 T/m^4 = m^2 (s'''' + m^2 s^(6)/4 + 13 m^4 s^(8)/240), since T'' = s up to terms of order
-  // m^-2
-  const auto tail = [m](double n) {
-    const double v = m * m / (n * n);
-    return -v * (4 + v * (6 + v * 26)) / kFourPi;
-  };
-  return sixth_differences(summed_phase_covariance, tail, m, lag, 1 / (m * m * m * m), dt_s);
 }
 
 namespace {

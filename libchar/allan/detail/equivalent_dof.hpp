@@ -26,13 +26,6 @@ using PerTerm = std::array<double, kRandomTerms>;
 PerTerm allan_term_covariance(
     double m1, double m2, double lag, double dt_s, bool with_flicker = true);
 
-/// Same for the third difference (Hadamard): -delta6_m s(lag) / m^2.
-PerTerm hadamard_term_covariance(double m, double lag, double dt_s);
-
-/// Same for the second difference of the phase averaged over m points (modified Allan): delta6_m
-/// T(lag) / m^4.
-PerTerm modified_term_covariance(double m, double lag, double dt_s);
-
 /// Exact equivalent degrees of freedom, 2 E[v]^2 / Var[v], of the deviation's variance at factor m
 /// from `terms` terms at stride `stride`, for the discrete noise mixture (docs/theory/allan.md).
 /// Identities: white, m=1: 2M/3; random walk, m=1: M.

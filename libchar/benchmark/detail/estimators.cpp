@@ -2,7 +2,6 @@
 #include "libchar/benchmark/detail/estimators.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"

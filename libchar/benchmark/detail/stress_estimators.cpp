@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/benchmark/detail/stress_cells.hpp"
-#include "libchar/benchmark/detail/stress_records.hpp"
 #include "libchar/core/numeric/moments.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/random.hpp"
@@ -18,6 +22,119 @@
 
 namespace libchar {
 namespace {
+
+// Records that break what is careless with numbers.
+
+struct StressRecord {
+  std::string name;
+  std::vector<double> y;
+  /// (y - shift) 2^-power without rounding: the same record in comfortable numbers
+  double shift = 0;
+  int power = 0;
+  bool drifts = false;
+  /// as it was before samples went missing; empty: none is missing
+  std::vector<double> whole;
+};
+
+inline constexpr double kStressRate = 100;
+
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kSamples = 4001;  // a prime
+
+class StressRecords {
+ public:
+  explicit StressRecords(std::vector<double> plain) : plain_(std::move(plain)) {}
+
+  /// Every sample by a formula of the plain one and its place.
+  void add(const char* name, const std::function<double(double, double)>& of) {
+    StressRecord record{name, plain_, 0, 0, false, {}};
+    for (std::size_t i = 0; i < plain_.size(); ++i)
+      record.y[i] = of(plain_[i], static_cast<double>(i) / static_cast<double>(plain_.size()));
+    out_.push_back(std::move(record));
+  }
+  void add_moved(const char* name, double shift, double factor) {
+    add(name, [=](double y, double) { return shift + factor * y; });
+    out_.back().shift = shift;
+  }
+  void add_scaled(const char* name, int power) {
+    add(name, [=](double y, double) { return std::ldexp(y, power); });
+    out_.back().power = power;
+  }
+  void drifts() { out_.back().drifts = true; }
+  void add_missing(const char* name, std::size_t from, std::size_t count) {
+    StressRecord record{name, plain_, 0, 0, false, plain_};
+    std::fill_n(record.y.begin() + static_cast<std::ptrdiff_t>(from), count, kAbsent);
+    out_.push_back(std::move(record));
+  }
+  void add_short(const char* name, std::size_t samples) {
+    out_.push_back({name,
+                    {plain_.begin(), plain_.begin() + static_cast<std::ptrdiff_t>(samples)},
+                    0,
+                    0,
+                    false,
+                    {}});
+  }
+  std::vector<StressRecord> take() { return std::move(out_); }
+
+ private:
+  std::vector<double> plain_;
+  std::vector<StressRecord> out_;
+};
+
+/// White noise and a random walk of deviation one each over ten thousand samples, multiples of 2^-20.
+std::vector<double> plain_record(std::uint64_t seed, std::size_t samples) {
+  DeviateStream white({seed, 0, Purpose::white}), walk({seed, 0, Purpose::walk});
+  std::vector<double> out(samples);
+  double position = 0;
+  for (double& y : out) {
+    position += 0.01 * walk.normal();
+    y = std::ldexp(std::round(std::ldexp(white.normal() + position, 20)), -20);
+  }
+  return out;
+}
+
+///< of all of them, Hz
+std::vector<StressRecord> stress_records(std::uint64_t seed) {
+  StressRecords all(plain_record(seed, kSamples));
+  all.add_scaled("a prime number of samples", 0);
+  all.add_moved("offset 1e9, noise 1e-6", 1e9, 1e-6);
+  all.add_moved("offset 9.81, noise 1e-3", 9.81, 1e-3);
+  all.add_moved("offset 1e9, noise 1", 1e9, 1);
+  all.add_scaled("denormal (1e-310)", -1030);
+  all.add_scaled("scale 1e200", 664);
+  all.add_scaled("scale 1e-200", -664);
+  all.add("drift of 1e6 deviations", [](double y, double t) { return y + 1e6 * t; });
+  all.drifts();
+  all.add("constant", [](double, double) { return 9.81; });
+  all.add("all zero", [](double, double) { return 0.0; });
+  all.add("plus and minus zero", [](double y, double) { return std::copysign(0.0, y); });
+  all.add("alternating +1, -1",
+          [even = true](double, double) mutable { return (even = !even) ? 1.0 : -1.0; });
+  all.add("one bit", [](double y, double) { return y > 0 ? 1.0 : -1.0; });
+  all.add("saturated", [](double y, double) { return std::clamp(y, -1.0, 0.5); });
+  all.add("float32", [](double y, double) {
+    return static_cast<double>(static_cast<float>(9.81 + 1e-3 * y));
+  });
+  all.add("one spike of 1e300", [first = true](double y, double t) mutable {
+    const bool here = first && t >= 0.4;
+    first = first && !here;
+    return here ? 1e300 : y;
+  });
+  all.add_missing("first sample missing", 0, 1);
+  all.add_missing("last sample missing", kSamples - 1, 1);
+  all.add_missing("burst of missing samples", 1500, 60);
+  all.add_short("1 sample", 1);
+  all.add_short("2 samples", 2);
+  all.add_short("3 samples", 3);
+  return all.take();
+}
+
+/// (y - shift) 2^-power.
+std::vector<double> comfortable(const StressRecord& record) {
+  std::vector<double> out = record.y;
+  for (double& y : out) y = std::ldexp(y - record.shift, -record.power);
+  return out;
+}
 
 // Stated digits (docs/reliability.md).
 constexpr double kMomentDigits = 13, kAllanDigits = 12, kSpectrumDigits = 11, kFitDigits = 6;
@@ -230,7 +347,7 @@ class ExactStream {
 /// White noise of deviation one with an offset and a drift, a hundred million samples, none of them kept.
 void stress_long_stream(
     double offset, double drift, std::uint64_t seed, Progress& progress, StressCell& cell) {
-  constexpr std::uint64_t kSamples = 100'000'000;
+  constexpr std::uint64_t kDriftSamples = 100'000'000;
   constexpr std::size_t kBlock = 1U << 16U;
   DeviateStream noise({seed, 0, Purpose::white});
   AllanPyramid pyramid;
@@ -238,12 +355,12 @@ void stress_long_stream(
       ExactStream(1), ExactStream(4), ExactStream(1024), ExactStream(1U << 20U)};
   Values block(kBlock);
   Exact first = 0;
-  for (std::uint64_t done = 0; done < kSamples; done += block.size()) {
-    progress.update(static_cast<double>(done) / kSamples, "stress: " + cell.input);
-    block.resize(std::min<std::uint64_t>(kBlock, kSamples - done));
+  for (std::uint64_t done = 0; done < kDriftSamples; done += block.size()) {
+    progress.update(static_cast<double>(done) / kDriftSamples, "stress: " + cell.input);
+    block.resize(std::min<std::uint64_t>(kBlock, kDriftSamples - done));
     noise.fill_normal(block);
     for (std::size_t i = 0; i < block.size(); ++i)
-      block[i] += offset + drift * static_cast<double>(done + i) / kSamples;
+      block[i] += offset + drift * static_cast<double>(done + i) / kDriftSamples;
     if (done == 0) first = block[0];
     pyramid.push(block);
     for (ExactStream& stream : exact)

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
@@ -77,12 +77,9 @@ std::vector<std::string> failures(const CharacterizationComparison& comparison,
                  did_you_mean(near, "labels are names of channels"));
   }
   if (checked == 0)
-    throw Error({ErrorKind::check,
-                 "E0923",
-                 "`check`",
-                 fmt::format("A has no {} that B could be held against", check.metric),
-                 check.text,
-                 ""});
+    throw Refusal(ErrorKind::check, "E0923", "`check`")
+        .says("A has no {} that B could be held against", check.metric)
+        .got(check.text);
   return out;
 }
 

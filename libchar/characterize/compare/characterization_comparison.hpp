@@ -19,11 +19,7 @@ enum class TermDifference {
 };
 template <>
 inline constexpr auto enum_table<TermDifference> =
-    enum_words<TermDifference>({{TermDifference::larger, "larger"},
-                                {TermDifference::smaller, "smaller"},
-                                {TermDifference::not_resolved, "not_resolved"},
-                                {TermDifference::not_judged, "not_judged"},
-                                {TermDifference::only_one, "only_one"}});
+    enum_words<TermDifference, "larger smaller not_resolved not_judged only_one">;
 
 /// A term of one channel; coefficients in the unit of the channel in A.
 struct ComparedTerm {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/document/schema.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fit/fit_json.hpp"
 
 namespace libchar {
@@ -74,13 +74,12 @@ std::string recording_of(const MapReader& map) {
 ReportedCharacterization read_summary(const Document& document, const std::string& file) {
   const std::string format = format_of(document);
   if (!is_known(format))
-    throw Error({ErrorKind::input,
-                 "E0771",
-                 file,
-                 "expected the report of a characterization (format characterization, pooled-runs "
-                 "or noise-fit)",
-                 format,
-                 "the report.json of a characterization is one"});
+    throw input_error("E0771", file)
+        .says(
+            "expected the report of a characterization (format characterization, pooled-runs or "
+            "noise-fit)")
+        .got(format)
+        .hint("the report.json of a characterization is one");
   check_format(document, file, format, 1);
   ReportedCharacterization out;
   out.file = file;
@@ -125,12 +124,10 @@ void refuse_lot_report(const std::string& path, const std::string& instead) {
   if (!std::filesystem::exists(file, ignored))
     file = (std::filesystem::path(path) / "lot.json").string();
   if (format_in(file) == "lot")
-    throw Error({ErrorKind::input,
-                 "E0771",
-                 file,
-                 "this is the report of a lot of devices",
-                 "lot",
-                 instead});
+    throw input_error("E0771", file)
+        .says("this is the report of a lot of devices")
+        .got("lot")
+        .hint(instead);
 }
 
 ReportedCharacterization parse_characterization_report(std::string_view text,

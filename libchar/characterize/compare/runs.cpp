@@ -13,15 +13,81 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/characterize/detail/alike_runs.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/characterize/characterization.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/simulate/random.hpp"
 
 namespace libchar {
 namespace {
+
+// Recordings that are to be taken together: are they of one sensor?
+
+/// The channel of that name; null: none.
+const ChannelResult* find_channel(const Characterization& result, const std::string& name) {
+  for (const ChannelResult& c : result.channels)
+    if (c.channel.name == name) return &c;
+  return nullptr;
+}
+
+constexpr double kOtherRate = 0.01;  ///< relative: clocks of one kind of sensor differ by less
+
+void check_channels(const Characterization& first, const Characterization& run) {
+  for (const ChannelResult& c : first.channels) {
+    const ChannelResult* const other = find_channel(run, c.channel.name);
+    if (other == nullptr)
+      throw input_error("E0761", run.log.file)
+          .says("has no channel {}, which {} has: runs of one sensor have the same channels",
+                c.channel.name,
+                first.log.file)
+          .hint("`channels` takes those that all have");
+    if (other->channel.unit != c.channel.unit)
+      throw input_error("E0761", run.log.file)
+          .says("channel {} is in {}, and in {} in {}: runs of one sensor have one unit",
+                c.channel.name,
+                other->channel.unit.empty() ? "no unit" : other->channel.unit,
+                c.channel.unit.empty() ? "no unit" : c.channel.unit,
+                first.log.file)
+          .hint("`units` says it where a log does not");
+  }
+  for (const ChannelResult& c : run.channels)
+    if (find_channel(first, c.channel.name) == nullptr)
+      throw input_error("E0761", run.log.file)
+          .says("has a channel {}, which {} has not: runs of one sensor have the same channels",
+                c.channel.name,
+                first.log.file)
+          .hint("`channels` takes those that all have");
+}
+
+/// Throws Error where the runs cannot be of one sensor (runs.hpp).
+void check_runs(std::span<const Characterization> runs) {
+  if (runs.size() < 2)
+    throw usage_error("E0205").says("one recording is not several runs").hint("name two at least");
+  refuse_same_recording(runs);
+  const Characterization& first = runs[0];
+  for (const Characterization& run : runs) {
+    check_channels(first, run);
+    const double rate = run.log.time.rate_hz, other = first.log.time.rate_hz;
+    if (std::abs(rate - other) > kOtherRate * other)
+      throw input_error("E0761", run.log.file)
+          .says("is sampled at {} Hz, and {} at {} Hz: runs of one sensor have one rate",
+                brief_text(rate, 6),
+                first.log.file,
+                brief_text(other, 6));
+    if (std::none_of(run.channels.begin(), run.channels.end(), [](const ChannelResult& c) {
+          return c.fit.has_value();
+        }))
+      throw input_error("E0761", run.log.file)
+          .says(run.channels.empty() || run.channels[0].findings.empty()
+                    ? "no channel of this run could be fitted"
+                    : "no channel of this run could be fitted: " +
+                          run.channels[0].findings[0].sentence)
+          .hint("leave this run out");
+  }
+}
 
 constexpr int kEnough =
     10;  ///< simulated sums as large as the observed one, after which p is known well enough
@@ -260,6 +326,16 @@ std::string pool_verdict(const PooledRuns& pooled) {
 }
 
 }  // namespace
+
+void refuse_same_recording(std::span<const Characterization> runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!runs[i].log.sha256.empty() && runs[i].log.sha256 == runs[j].log.sha256)
+        throw input_error("E0762", runs[i].log.file)
+            .says("is the same recording as {}: taken twice it would count as two",
+                  runs[j].log.file)
+            .hint("leave one of them out");
+}
 
 PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& options) {
   check_runs(runs);

@@ -104,8 +104,6 @@ const Fields<NoiseType>& noise_type_fields() {
   return rows;
 }
 
-}  // namespace
-
 const Fields<AllanOfChannel>& allan_channel_fields() {
   using T = AllanOfChannel;
   static const Fields<T> rows = {
@@ -126,6 +124,8 @@ const Fields<AllanOfChannel>& allan_channel_fields() {
   };
   return rows;
 }
+
+}  // namespace
 
 const Fields<AllanDocument>& allan_fields() {
   using T = AllanDocument;

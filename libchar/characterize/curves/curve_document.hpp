@@ -90,7 +90,6 @@ SpectrumOfChannel spectrum_of_channel(const Channel& channel,
 AllanDocument read_allan(const MapReader& document);
 SpectrumDocument read_spectra(const MapReader& document);
 
-const Fields<AllanOfChannel>& allan_channel_fields();
 const Fields<AllanDocument>& allan_fields();
 const Fields<SpectralLine>& line_fields();
 const Fields<SpectrumOfChannel>& spectrum_channel_fields();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/fit/curve/curve_fit.hpp"
@@ -25,12 +25,8 @@ Table unnamed_table(const std::string& path, const CurveTableOptions& options, P
   reading.rate_hz = 1;  // rows of a curve have no time
   const Recording read = read_recording(path, reading, progress);
   if (read.samples.size() < 2)
-    throw Error({ErrorKind::input,
-                 "E0803",
-                 path,
-                 "a curve needs two columns: averaging time or frequency, and values",
-                 "",
-                 ""});
+    throw input_error("E0803", path)
+        .says("a curve needs two columns: averaging time or frequency, and values");
   Table table{read.info, {}, {}};
   for (std::size_t c = 1; c < read.samples.size(); ++c) {
     DigitisedCurve curve;
@@ -59,12 +55,10 @@ void refuse_unknown(const std::string& path,
     if (std::none_of(names.begin(), names.end(), [&](const std::string& name) {
           return stands_for(word, name);
         }))
-      throw Error({ErrorKind::usage,
-                   "E0320",
-                   path,
-                   "no curve of this name",
-                   word,
-                   did_you_mean(nearest(word, names), "it has " + first_names(names))});
+      throw usage_error("E0320", path)
+          .says("no curve of this name")
+          .got(word)
+          .hint(did_you_mean(nearest(word, names), "it has " + first_names(names)));
 }
 
 Table named_table(const std::string& path, const CurveTable& named, const ReadOptions& reading) {
@@ -75,12 +69,9 @@ Table named_table(const std::string& path, const CurveTable& named, const ReadOp
   table.info.sha256 = named.sha256;
   for (const std::string& option : options_given(reading))
     if (option != "channels" && option != "units" && option != "rate_hz")
-      throw Error({ErrorKind::usage,
-                   "E0336",
-                   "`" + option + "`",
-                   "has no effect on a table of curves with names",
-                   "",
-                   "leave it out"});
+      throw usage_error("E0336", "`" + option + "`")
+          .says("has no effect on a table of curves with names")
+          .hint("leave it out");
   refuse_unknown(path, named, wanted);
   for (const NamedCurve& n : named.curves) {
     const auto means_it = [&](const std::string& word) { return stands_for(word, n.name); };

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/quality.hpp"
 
 namespace libchar {
@@ -25,12 +25,7 @@ LogCrossSpectrum log_cross_spectrum(const std::string& path,
                                     Progress& progress) {
   ReadOptions reading = options.reading;
   if (first == second)
-    throw Error({ErrorKind::usage,
-                 "E0873",
-                 "",
-                 "a cross spectrum is of two channels",
-                 first + " twice",
-                 ""});
+    throw usage_error("E0873").says("a cross spectrum is of two channels").got(first + " twice");
   reading.channels = {first, second};
   Recording recording = read_recording(path, reading, progress);
   // They come in the order of the log.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "libchar/characterize/detail/longest_segment.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/quality.hpp"
@@ -115,13 +115,10 @@ LogSpectra whole(const RecordingView& recording, const LogSpectraOptions& option
 
 LogSpectra finished(LogSpectra result, const LogSpectraOptions& options) {
   if (result.channels.empty())
-    throw Error(
-        {ErrorKind::numeric,
-         "E0715",
-         result.log.file,
-         "no channel gives a spectrum" + (result.notes.empty() ? "" : ": " + result.notes.front()),
-         "",
-         segment_given(options) ? "try a shorter `segment`" : ""});
+    throw numeric_error("E0715", result.log.file)
+        .says("no channel gives a spectrum" +
+              (result.notes.empty() ? "" : ": " + result.notes.front()))
+        .hint(segment_given(options) ? "try a shorter `segment`" : "");
   for (ChannelSpectrum& c : result.channels) {
     if (options.lines) c.lines = find_lines(c.spectrum);
     if (options.bins > 0) c.spectrum = log_binned(c.spectrum, options.bins);

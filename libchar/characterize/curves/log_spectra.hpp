@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libchar/log/read.hpp"
-#include "libchar/log/recording_view.hpp"
+#include "libchar/log/recording.hpp"
 #include "libchar/spectrum/lines.hpp"
 #include "libchar/spectrum/median_spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"

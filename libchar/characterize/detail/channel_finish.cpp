@@ -8,7 +8,6 @@
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "libchar/allan/allan_pyramid.hpp"

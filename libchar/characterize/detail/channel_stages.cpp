@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/units.hpp"
@@ -26,14 +26,11 @@ constexpr std::size_t kMostFitted = 5000;
 
 void refuse_too_many(const LogInfo& log) {
   if (log.channels.size() > kMostFitted)
-    throw Error({ErrorKind::input,
-                 "E0707",
-                 log.file,
-                 fmt::format("{} channels are more than are characterized at a time, {}",
-                             log.channels.size(),
-                             kMostFitted),
-                 "",
-                 "choose some of them with `channels`"});
+    throw input_error("E0707", log.file)
+        .says("{} channels are more than are characterized at a time, {}",
+              log.channels.size(),
+              kMostFitted)
+        .hint("choose some of them with `channels`");
 }
 
 }  // namespace
@@ -98,12 +95,10 @@ std::optional<std::size_t> temperature_channel(const LogInfo& log, const std::st
     const auto means_it = [&](const std::string& name) { return matches(wanted, name); };
     found = std::find_if(names.begin(), names.end(), means_it);
     if (found != names.end() && std::any_of(found + 1, names.end(), means_it))
-      throw Error({ErrorKind::usage,
-                   "E0702",
-                   log.file,
-                   "several channels match this pattern, and one is the `temperature`",
-                   wanted,
-                   "`temperature` " + *found + " is the first of them"});
+      throw usage_error("E0702", log.file)
+          .says("several channels match this pattern, and one is the `temperature`")
+          .got(wanted)
+          .hint("`temperature` " + *found + " is the first of them");
   }
   if (found == names.end()) return std::nullopt;
   return static_cast<std::size_t>(found - names.begin());
@@ -117,32 +112,23 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
     std::vector<std::string> names;
     for (const Channel& channel : channels) names.push_back(channel.name);
     const auto near = nearest(wanted, names);
-    throw Error({ErrorKind::usage,
-                 "E0702",
-                 so_far.file,
-                 "there is no channel of this name to be the `temperature`",
-                 wanted,
-                 did_you_mean(near, "it has " + first_names(names))});
+    throw usage_error("E0702", so_far.file)
+        .says("there is no channel of this name to be the `temperature`")
+        .got(wanted)
+        .hint(did_you_mean(near, "it has " + first_names(names)));
   }
   temperature_index_ = *found;
   const std::string& name = channels[temperature_index_].name;
   const std::string& unit = channels[temperature_index_].unit;
   const auto known = find_unit(unit);
   if (known && known->quantity != Quantity::temperature)
-    throw Error({ErrorKind::usage,
-                 "E0702",
-                 so_far.file,
-                 fmt::format("the channel {} is in {}, which is no temperature", name, unit),
-                 "",
-                 "choose a channel in degC, K or degF, or one without a unit, which is taken for "
-                 "degC"});
+    throw usage_error("E0702", so_far.file)
+        .says("the channel {} is in {}, which is no temperature", name, unit)
+        .hint(
+            "choose a channel in degC, K or degF, or one without a unit, which is taken for degC");
   if (channels.size() < 2)
-    throw Error({ErrorKind::usage,
-                 "E0702",
-                 so_far.file,
-                 fmt::format("{} is the only channel: there is none that it could move", name),
-                 "",
-                 ""});
+    throw usage_error("E0702", so_far.file)
+        .says("{} is the only channel: there is none that it could move", name);
   temperature_options_ = options_;
   temperature_options_.data = SampleKind::rate;
 }
@@ -177,20 +163,15 @@ void ChannelStages::refuse(const LogInfo& log) const {
   const std::uint64_t unit = allowed < (1U << 20U) ? 1U << 10U : 1U << 20U;
   const std::string_view name = allowed < (1U << 20U) ? "KiB" : "MiB";
   const std::uint64_t needed = (rows_ * stages_.size() * sizeof(double) + unit - 1) / unit;
-  throw Error({ErrorKind::usage,
-               "E0701",
-               log.file,
-               fmt::format("{} takes all samples at once: {} {}, and {} {} are allowed",
-                           needs_all_samples_,
-                           needed,
-                           name,
-                           allowed / unit,
-                           name),
-               "",
-               fmt::format("give `memory_bytes` {}{}, or read less with `channels`, `from_s`, "
-                           "`to_s`",
-                           needed,
-                           name)});
+  throw usage_error("E0701", log.file)
+      .says("{} takes all samples at once: {} {}, and {} {} are allowed",
+            needs_all_samples_,
+            needed,
+            name,
+            allowed / unit,
+            name)
+      .hint(
+          "give `memory_bytes` {}{}, or read less with `channels`, `from_s`, `to_s`", needed, name);
 }
 
 std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& progress) {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/spectrum/welch.hpp"
 
@@ -35,13 +35,9 @@ void refuse_longer_segment(const std::string& path,
   Nothing nothing;
   const std::uint64_t longest = read_log(path, counted, nothing, progress).samples;
   if (samples <= longest) return;
-  throw Error(
-      {ErrorKind::usage,
-       "E0875",
-       "`segment`",
-       fmt::format("a segment of {} samples is longer than the record of {}", samples, longest),
-       "",
-       fmt::format("the longest that fits has {}", longest)});
+  throw usage_error("E0875", "`segment`")
+      .says("a segment of {} samples is longer than the record of {}", samples, longest)
+      .hint("the longest that fits has {}", longest);
 }
 
 }  // namespace libchar

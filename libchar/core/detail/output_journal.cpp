@@ -16,9 +16,9 @@
 #include <thread>
 
 #include "libchar/core/document/json.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -33,19 +33,14 @@ fs::path journal_of(const fs::path& folder) {
 
 constexpr const char* kRunAgain = "run it again: it first finishes what this run has begun";
 
-[[noreturn]] void fail_on(const fs::path& path, const char* doing, const char* hint = "") {
-  throw Error({ErrorKind::output,
-               "E0501",
-               path.string(),
-               fmt::format("cannot {}: {}", doing, std::strerror(errno)),
-               "",
-               hint});
+Refusal failure_on(const fs::path& path, const char* doing) {
+  return output_error("E0501", path.string()).says("cannot {}: {}", doing, std::strerror(errno));
 }
 
 void remove_file(const fs::path& path, const char* doing) {
   // Twice, as names are given.
   if (::unlink(path.c_str()) != 0 && errno != ENOENT && ::unlink(path.c_str()) != 0)
-    fail_on(path, doing, kRunAgain);
+    throw failure_on(path, doing).hint(kRunAgain);
 }
 
 /// The journal is a file in somebody's folder: no name in it leads out of that folder.
@@ -67,12 +62,9 @@ OutputJournal read_journal(const fs::path& folder) {
     for (const Json& name : document.at("remove")) journal.remove.push_back(name_in(name));
     return journal;
   } catch (const std::exception&) {
-    throw Error({ErrorKind::output,
-                 "E0514",
-                 path.string(),
-                 "is not a list of outputs that an interrupted run has left",
-                 "",
-                 "remove it"});
+    throw output_error("E0514", path.string())
+        .says("is not a list of outputs that an interrupted run has left")
+        .hint("remove it");
   }
 }
 
@@ -107,7 +99,7 @@ void run_journal(const fs::path& folder, const OutputJournal& journal) {
     const int error = errno;
     if (!begun) ::unlink(journal_of(folder).c_str());
     errno = error;
-    fail_on(target, "rename into place", begun ? kRunAgain : "");
+    throw failure_on(target, "rename into place").hint(begun ? kRunAgain : "");
   }
   for (const std::string& name : journal.remove)
     remove_file(folder / name, "remove this file of an earlier run");
@@ -124,7 +116,7 @@ bool has_journal(const fs::path& folder) {
   if (::lstat(journal_of(folder).c_str(), &status) == 0) return true;
   // Where there is no folder, or one that may not be looked into, there is nothing to finish.
   if (errno == ENOENT || errno == ENOTDIR) return false;
-  fail_on(journal_of(folder), "look for this list of what an interrupted run has left");
+  throw failure_on(journal_of(folder), "look for this list of what an interrupted run has left");
 }
 
 bool journal_names(const fs::path& folder, const std::string& name) {
@@ -147,12 +139,9 @@ FolderLock::FolderLock(const fs::path& folder, double wait_s)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   ::close(descriptor_);
-  throw Error({ErrorKind::output,
-               "E0515",
-               folder.string(),
-               "another run is writing its results into this folder",
-               "",
-               "wait for it or choose another folder"});
+  throw output_error("E0515", folder.string())
+      .says("another run is writing its results into this folder")
+      .hint("wait for it or choose another folder");
 }
 
 FolderLock::~FolderLock() {

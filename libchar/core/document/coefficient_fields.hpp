@@ -3,6 +3,7 @@
 
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/document/fields.hpp"
+#include "libchar/core/finding.hpp"
 
 namespace libchar {
 
@@ -16,5 +17,9 @@ std::span<const Word> term_words();
 const Fields<Coefficient>& coefficient_fields();
 
 const Fields<Goodness>& goodness_fields();
+
+// A finding in a document: written by reports and models, read back by what uses them.
+
+const Fields<Finding>& finding_fields();
 
 }  // namespace libchar

@@ -1,16 +1,22 @@
 #include "libchar/core/document/document.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "libchar/core/document/json_reader.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/file/file_text.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/utf8.hpp"
 
@@ -65,7 +71,7 @@ class Builder : public YAML::EventHandler {
     put(mark, Document{});
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    refuse(mark, "aliases are not read", "*");
+    throw refusal(mark).says("aliases are not read").got("*");
   }
   void OnScalar(const YAML::Mark& mark,
                 const std::string& tag,
@@ -73,7 +79,7 @@ class Builder : public YAML::EventHandler {
                 const std::string& value) override {
     const bool quoted = tag == "!";  // "!" marks a quoted text, "?" an unquoted one
     check(mark, quoted ? "" : tag, anchor);
-    if (!quoted && value == "<<") refuse(mark, "merge keys are not read", value);
+    if (!quoted && value == "<<") throw refusal(mark).says("merge keys are not read").got(value);
     put(mark, quoted ? scalar(Document::Kind::text, value) : unquoted(value));
   }
   void OnSequenceStart(const YAML::Mark& mark,
@@ -99,25 +105,20 @@ class Builder : public YAML::EventHandler {
     bool awaits_value = false;
   };
 
-  [[noreturn]] void refuse(const YAML::Mark& mark, std::string what, std::string got) const {
-    throw Error({ErrorKind::input,
-                 "E0521",
-                 fmt::format("{}:{}:{}", file_, mark.line + 1, mark.column + 1),
-                 std::move(what),
-                 std::move(got),
-                 ""});
+  Refusal refusal(const YAML::Mark& mark) const {
+    return input_error("E0521", fmt::format("{}:{}:{}", file_, mark.line + 1, mark.column + 1));
   }
   void check(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) const {
-    if (!tag.empty() && tag != "?") refuse(mark, "tags are not read", tag);
-    if (anchor != 0) refuse(mark, "anchors are not read", "&");
+    if (!tag.empty() && tag != "?") throw refusal(mark).says("tags are not read").got(tag);
+    if (anchor != 0) throw refusal(mark).says("anchors are not read").got("&");
   }
 
   void add_key(const YAML::Mark& mark, Level& level, const std::string& key) {
     if (key.size() > kMaxKey)
-      refuse(mark, fmt::format("a key is longer than {} characters", kMaxKey), key);
+      throw refusal(mark).says("a key is longer than {} characters", kMaxKey).got(key);
     if (level.node->map.size() >= kMaxKeys)
-      refuse(mark, fmt::format("a map has more than {} keys", kMaxKeys), key);
-    if (level.node->find(key) != nullptr) refuse(mark, "a key stands twice", key);
+      throw refusal(mark).says("a map has more than {} keys", kMaxKeys).got(key);
+    if (level.node->find(key) != nullptr) throw refusal(mark).says("a key stands twice").got(key);
     level.node->map.push_back({key, mark.line + 1, mark.column + 1, {}});
     level.awaits_value = true;
   }
@@ -146,10 +147,10 @@ class Builder : public YAML::EventHandler {
 
   void open(const YAML::Mark& mark, Document::Kind kind) {
     if (stack_.size() >= kMaxDocumentDepth)
-      refuse(mark, fmt::format("is nested deeper than {} levels", kMaxDocumentDepth), "");
+      throw refusal(mark).says("is nested deeper than {} levels", kMaxDocumentDepth);
     if (!stack_.empty() && stack_.back().node->kind == Document::Kind::map &&
         !stack_.back().awaits_value)
-      refuse(mark, "a list or map cannot be a key", "");
+      throw refusal(mark).says("a list or map cannot be a key");
     stack_.push_back({put(mark, scalar(kind, "")), false});
   }
 
@@ -158,25 +159,22 @@ class Builder : public YAML::EventHandler {
   std::vector<Level> stack_;
 };
 
-[[noreturn]] void refuse_text(std::string where, std::string what) {
-  throw Error({ErrorKind::input, "E0522", std::move(where), std::move(what), "", ""});
-}
-
 void check_bytes(std::string_view text, const std::string& file) {
   if (text.size() > kMaxDocumentBytes)
-    refuse_text(
-        file,
-        fmt::format("YAML of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes));
+    throw input_error("E0522", file)
+        .says("YAML of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes);
   if (first_invalid_utf8(text) != std::string_view::npos)
-    refuse_text(fmt::format("{} (byte {})", file, first_invalid_utf8(text)), "is not valid UTF-8");
+    throw input_error("E0522", fmt::format("{} (byte {})", file, first_invalid_utf8(text)))
+        .says("is not valid UTF-8");
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(zero), '\n');
     const std::size_t start = zero == 0 ? std::string_view::npos : text.rfind('\n', zero - 1);
     const std::size_t column = start == std::string_view::npos ? zero + 1 : zero - start;
-    refuse_text(fmt::format("{}:{}:{}", file, line, column), "holds a zero byte");
+    throw input_error("E0522", fmt::format("{}:{}:{}", file, line, column))
+        .says("holds a zero byte");
   }
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-    refuse_text(file + ":1:1", "is empty");
+    throw input_error("E0522", file + ":1:1").says("is empty");
 }
 
 // The first line with a tab in its indentation, 0 when there is none.
@@ -220,16 +218,19 @@ Document parse_yaml_document(std::string_view text, const std::string& file) {
     std::istringstream in{std::string(text)};
     YAML::Parser parser(in);
     Builder builder(file);
-    if (!parser.HandleNextDocument(builder)) refuse_text(file + ":1:1", "holds no document");
+    if (!parser.HandleNextDocument(builder))
+      throw input_error("E0522", file + ":1:1").says("holds no document");
     Builder second(file);
-    if (parser.HandleNextDocument(second)) refuse_text(file, "holds a second document");
+    if (parser.HandleNextDocument(second))
+      throw input_error("E0522", file).says("holds a second document");
     return builder.take();
   } catch (const YAML::Exception& error) {
     if (const int line = line_indented_by_tab(text); line > 0 && line <= error.mark.line + 1)
-      refuse_text(fmt::format("{}:{}:1", file, line),
-                  "is not valid YAML: a line is indented with a tab, blanks are wanted");
-    refuse_text(fmt::format("{}:{}:{}", file, error.mark.line + 1, error.mark.column + 1),
-                "is not valid YAML: " + error.msg);
+      throw input_error("E0522", fmt::format("{}:{}:1", file, line))
+          .says("is not valid YAML: a line is indented with a tab, blanks are wanted");
+    throw input_error("E0522",
+                      fmt::format("{}:{}:{}", file, error.mark.line + 1, error.mark.column + 1))
+        .says("is not valid YAML: " + error.msg);
   }
 }
 
@@ -260,6 +261,31 @@ Json as_json(const Document& node) {
       break;
   }
   return nullptr;
+}
+
+namespace {}  // namespace
+
+std::string read_document_text(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) {
+    const int reason = errno;
+    throw input_error("E0551", path).says(std::string("cannot be read: ") + std::strerror(reason));
+  }
+  struct Closer {
+    int descriptor;
+    ~Closer() { ::close(descriptor); }
+  } closer{descriptor};
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0)
+    throw input_error("E0551", path).says(std::string("cannot be read: ") + std::strerror(errno));
+  if (S_ISDIR(status.st_mode))
+    throw input_error("E0551", path).says("is a folder, a file was expected");
+  if (!S_ISREG(status.st_mode)) throw input_error("E0551", path).says("is no regular file");
+  if (static_cast<std::size_t>(status.st_size) > kMaxDocumentBytes)
+    throw input_error("E0551", path)
+        .says("{} bytes exceed the limit of {}", status.st_size, kMaxDocumentBytes)
+        .hint("is this a log? a model or scene file is a short text");
+  return rest_of_file(descriptor, path, kMaxDocumentBytes);
 }
 
 }  // namespace libchar

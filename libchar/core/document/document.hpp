@@ -50,4 +50,9 @@ Document parse_document(std::string_view text, const std::string& file);
 /// The document without its places.
 Json as_json(const Document& document);
 
+// Documents are small: their files are read whole.
+
+/// Reads a whole small text file: a regular one of at most 16 MiB. Throws Error(input).
+std::string read_document_text(const std::string& path);
+
 }  // namespace libchar

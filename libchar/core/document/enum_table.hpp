@@ -4,8 +4,11 @@
 //
 //     enum class Sides { one, two };
 //     template <>
-//     inline constexpr auto enum_table<Sides> =
-//         enum_words<Sides>({{Sides::one, "one"}, {Sides::two, "two"}});
+//     inline constexpr auto enum_table<Sides> = enum_words<Sides, "one two">;
+//
+// Words in another order than the enum's, or with blanks in them, stand beside their values:
+//
+//     std::to_array<EnumWord<Sides>>({{Sides::two, "two"}, {Sides::one, "one"}})
 
 #include <algorithm>
 #include <array>
@@ -24,10 +27,29 @@ struct EnumWord {
   std::string_view word;
 };
 
-template <typename Enum, std::size_t N>
-constexpr std::array<EnumWord<Enum>, N> enum_words(const EnumWord<Enum> (&rows)[N]) {
-  return std::to_array(rows);
-}
+namespace detail {
+
+/// Words with blanks between them, as an argument of a template.
+template <std::size_t N>
+struct WordList {
+  char text[N] = {};
+  constexpr WordList(const char (&words)[N]) { std::copy_n(words, N, text); }
+};
+
+}  // namespace detail
+
+/// The words of an enum that counts from 0, in its order.
+template <typename Enum, detail::WordList words>
+inline constexpr auto enum_words = [] {
+  constexpr std::string_view all(words.text);
+  std::array<EnumWord<Enum>, std::count(all.begin(), all.end(), ' ') + 1> rows{};
+  for (std::size_t i = 0, from = 0; i < rows.size(); ++i) {
+    const std::size_t end = std::min(all.find(' ', from), all.size());
+    rows[i] = {static_cast<Enum>(i), all.substr(from, end - from)};
+    from = end + 1;
+  }
+  return rows;
+}();
 
 /// The table of an enum, in the order in which its words are offered; nullptr for one without.
 template <typename Enum>

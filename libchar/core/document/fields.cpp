@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "libchar/core/detail/match.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
@@ -49,12 +49,9 @@ std::vector<Interval> read_intervals(const MapReader& at, std::string_view key) 
                                  std::string_view key,
                                  const Document& value,
                                  const char* expected) {
-  throw Error({ErrorKind::input,
-               "E0982",
-               at.where(value),
-               fmt::format("{}: {} was expected", at.path_of(key), expected),
-               value.text,
-               ""});
+  throw input_error("E0982", at.where(value))
+      .says("{}: {} was expected", at.path_of(key), expected)
+      .got(value.text);
 }
 
 // One value of a column. What is null stays as it is where the row says what that means, and is NaN elsewhere.

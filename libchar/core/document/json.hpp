@@ -1,10 +1,12 @@
 #pragma once
 // JSON at the borders: nlohmann's type, with the guards it lacks. Whoever builds a document includes <nlohmann/json.hpp>.
 
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace libchar {
 
@@ -27,5 +29,19 @@ Json with_valid_text(Json document);
 /// The document as text, doubles in shortest round-trip form, two-space indent, newline at the end. Strings that are not
 /// UTF-8 are escaped by `printable`. A NaN or infinity in the document is a programmer's mistake and throws.
 std::string dump_json(const Json& document);
+
+// Where two documents differ, and by how many digits their numbers agree.
+
+struct JsonDifference {
+  std::string at;        ///< "/fit/0/terms/1/value"
+  std::string was, now;  ///< short
+  /// of numbers: |now - was| over the larger; infinite for anything else, and for what is missing on a side
+  double relative = std::numeric_limits<double>::infinity();
+};
+
+/// Differences in order of the first document; members named in `ignored` are skipped at every depth.
+std::vector<JsonDifference> json_differences(const Json& was,
+                                             const Json& now,
+                                             const std::vector<std::string>& ignored = {});
 
 }  // namespace libchar

@@ -13,7 +13,7 @@
 
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/utf8.hpp"
 
 namespace libchar {
@@ -99,9 +99,10 @@ class Guard : public nlohmann::json_sax<Json> {
   }
   bool number_float(number_float_t value, const string_t& literal) override {
     const std::size_t start = start_of_number(literal);
-    if (!std::isfinite(value)) refuse("E0602", "a number is out of range", literal, start);
+    if (!std::isfinite(value))
+      throw refusal("E0602", start).says("a number is out of range").got(literal);
     if (literal.find_first_of(".eE") == string_t::npos)
-      refuse("E0602", "an integer has more than 64 bits", literal, start);
+      throw refusal("E0602", start).says("an integer has more than 64 bits").got(literal);
     put(Document::Kind::number, literal, start).number = value;
     return true;
   }
@@ -117,7 +118,7 @@ class Guard : public nlohmann::json_sax<Json> {
   bool key(string_t& name) override {
     const std::size_t start = start_of_text();
     if (!keys_.back().insert(name).second)
-      refuse("E0603", "a key stands twice in one object", name, start);
+      throw refusal("E0603", start).says("a key stands twice in one object").got(name);
     const Place place = places_.at(start);
     stack_.back()->map.push_back({name, place.line, place.column, {}});
     return true;
@@ -125,27 +126,22 @@ class Guard : public nlohmann::json_sax<Json> {
   bool parse_error(std::size_t position,
                    const std::string& token,
                    const nlohmann::detail::exception& e) override {
-    if (e.id == 406) refuse("E0602", "a number is out of range", token, start_of_number(token));
+    if (e.id == 406)
+      throw refusal("E0602", start_of_number(token)).says("a number is out of range").got(token);
     std::string reason = e.what();
     const std::size_t colon = reason.find("syntax error");
     reason = colon == std::string::npos ? "is not valid JSON"
                                         : "is not valid JSON: " + reason.substr(colon);
     const std::size_t semicolon = reason.find("; last read");
     if (semicolon != std::string::npos) reason.resize(semicolon);
-    throw Error({ErrorKind::input,
-                 "E0601",
-                 described(text_, position == 0 ? 0 : position - 1, file_),
-                 reason,
-                 token,
-                 ""});
+    throw input_error("E0601", described(text_, position == 0 ? 0 : position - 1, file_))
+        .says(reason)
+        .got(token);
   }
 
  private:
-  [[noreturn]] void refuse(const char* code,
-                           const std::string& what,
-                           const std::string& got,
-                           std::size_t byte) {
-    throw Error({ErrorKind::input, code, described(text_, byte, file_), what, got, ""});
+  Refusal refusal(const char* code, std::size_t byte) {
+    return input_error(code, described(text_, byte, file_));
   }
   std::size_t byte() const { return static_cast<std::size_t>(read_ - text_.data()); }
   // Words, brackets and texts have been read to their last character.
@@ -194,12 +190,8 @@ class Guard : public nlohmann::json_sax<Json> {
   }
   bool open(Document::Kind kind) {
     if (stack_.size() >= kMaxDocumentDepth)
-      throw Error({ErrorKind::input,
-                   "E0604",
-                   file_,
-                   fmt::format("JSON is nested deeper than {} levels", kMaxDocumentDepth),
-                   "",
-                   ""});
+      throw input_error("E0604", file_)
+          .says("JSON is nested deeper than {} levels", kMaxDocumentDepth);
     stack_.push_back(&put(kind, "", byte() - 1));
     keys_.emplace_back();
     return true;
@@ -223,29 +215,16 @@ class Guard : public nlohmann::json_sax<Json> {
 
 Document parse_json_document(std::string_view text, const std::string& file) {
   if (text.size() > kMaxDocumentBytes)
-    throw Error(
-        {ErrorKind::input,
-         "E0605",
-         file,
-         fmt::format(
-             "JSON file of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes),
-         "",
-         ""});
+    throw input_error("E0605", file)
+        .says("JSON file of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes);
   const std::string_view body = text.substr(text.starts_with(kMark) ? kMark.size() : 0);
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos)
-    throw Error({ErrorKind::input,
-                 "E0606",
-                 file + ":1:1 (byte 0)",
-                 "is empty, a JSON document was expected",
-                 "",
-                 ""});
+    throw input_error("E0606", file + ":1:1 (byte 0)")
+        .says("is empty, a JSON document was expected");
   if (const std::size_t bad = first_invalid_utf8(text); bad != std::string_view::npos)
-    throw Error({ErrorKind::input,
-                 "E0607",
-                 described(text, bad, file),
-                 "is not valid UTF-8",
-                 std::string(text.substr(bad, 1)),
-                 ""});
+    throw input_error("E0607", described(text, bad, file))
+        .says("is not valid UTF-8")
+        .got(std::string(text.substr(bad, 1)));
   Guard guard(text, file);
   const char* end = text.data() + text.size();
   Json::sax_parse(Cursor{text.data(), guard.furthest()}, Cursor{end, guard.furthest()}, &guard);

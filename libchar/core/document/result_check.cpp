@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document/json.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 
@@ -131,14 +131,10 @@ std::vector<ResultCheck> check_results(const std::string& folder_or_document,
       out.push_back(check_document(path, document, inputs_in));
   }
   if (out.empty())
-    throw Error({ErrorKind::input,
-                 "E0556",
-                 folder_or_document,
-                 folder
-                     ? "holds no document that names its files (report.json, runs.json, lot.json)"
-                     : "is no document that names its files (report.json, runs.json, lot.json)",
-                 "",
-                 "name a folder that characterize or replay has written"});
+    throw input_error("E0556", folder_or_document)
+        .says(folder ? "holds no document that names its files (report.json, runs.json, lot.json)"
+                     : "is no document that names its files (report.json, runs.json, lot.json)")
+        .hint("name a folder that characterize or replay has written");
   return out;
 }
 

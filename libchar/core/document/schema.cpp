@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/spelling.hpp"
 
@@ -16,12 +16,6 @@ namespace {
 
 std::string place(const std::string& file, int line, int column) {
   return line > 0 ? fmt::format("{}:{}:{}", file, line, column) : file;
-}
-
-[[noreturn]] void fail(
-    const char* code, std::string where, std::string what, std::string got, std::string hint) {
-  throw Error(
-      {ErrorKind::input, code, std::move(where), std::move(what), std::move(got), std::move(hint)});
 }
 
 std::string kind_name(Document::Kind kind) {
@@ -80,13 +74,11 @@ std::string shown(const Document& value) {
 MapReader::MapReader(const Document& node, std::string file, std::string path)
     : node_(&node), file_(std::move(file)), path_(std::move(path)), any_keys_(true) {
   if (node.kind != Document::Kind::map)
-    fail("E0541",
-         where(node),
-         fmt::format("{}expected a map of keys and values, found {}",
-                     path_.empty() ? "" : path_ + ": ",
-                     kind_name(node.kind)),
-         node.text,
-         "");
+    throw input_error("E0541", where(node))
+        .says("{}expected a map of keys and values, found {}",
+              path_.empty() ? "" : path_ + ": ",
+              kind_name(node.kind))
+        .got(node.text);
 }
 
 MapReader::MapReader(const Document& node,
@@ -98,11 +90,10 @@ MapReader::MapReader(const Document& node,
   for (const DocumentEntry& entry : node.map) {
     if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
     const auto near = nearest(entry.key, keys);
-    fail("E0540",
-         place(file_, entry.line, entry.column),
-         path_.empty() ? "unknown key" : "unknown key in " + path_,
-         entry.key,
-         did_you_mean(near, fmt::format("the keys here are {}", fmt::join(keys, ", "))));
+    throw input_error("E0540", place(file_, entry.line, entry.column))
+        .says(path_.empty() ? "unknown key" : "unknown key in " + path_)
+        .got(entry.key)
+        .hint(did_you_mean(near, fmt::format("the keys here are {}", fmt::join(keys, ", "))));
   }
 }
 
@@ -119,36 +110,30 @@ const Document& MapReader::require(std::string_view key) const {
   const Document* value = get(key);
   if (value != nullptr) return *value;
   const DocumentEntry* entry = node_->find(key);
-  fail("E0542",
-       where(entry != nullptr ? entry->value : *node_),
-       fmt::format("{} is missing", path_of(key)),
-       "",
-       "");
+  throw input_error("E0542", where(entry != nullptr ? entry->value : *node_))
+      .says("{} is missing", path_of(key));
 }
 
 double MapReader::checked(std::string_view key, const Document& value, NumberRange range) const {
   if (value.kind != Document::Kind::number)
-    fail("E0541",
-         where(value),
-         fmt::format("{}: expected a number, found {}", path_of(key), kind_name(value.kind)),
-         value.text,
-         number_hint(key, value.text));
+    throw input_error("E0541", where(value))
+        .says("{}: expected a number, found {}", path_of(key), kind_name(value.kind))
+        .got(value.text)
+        .hint(number_hint(key, value.text));
   const bool inside = value.number <= range.highest &&
                       (range.open_low ? value.number > range.lowest : value.number >= range.lowest);
   if (inside) return value.number;
   const bool above = range.highest == std::numeric_limits<double>::max();
-  fail("E0543",
-       where(value),
-       above ? fmt::format("{}: expected a number {} {}",
-                           path_of(key),
-                           range.open_low ? "above" : "of at least",
-                           shortest(range.lowest))
-             : fmt::format("{}: expected a number from {} to {}",
-                           path_of(key),
-                           shortest(range.lowest),
-                           shortest(range.highest)),
-       value.text,
-       "");
+  throw input_error("E0543", where(value))
+      .says(above ? fmt::format("{}: expected a number {} {}",
+                                path_of(key),
+                                range.open_low ? "above" : "of at least",
+                                shortest(range.lowest))
+                  : fmt::format("{}: expected a number from {} to {}",
+                                path_of(key),
+                                shortest(range.lowest),
+                                shortest(range.highest)))
+      .got(value.text);
 }
 
 double MapReader::number(std::string_view key, NumberRange range) const {
@@ -170,13 +155,11 @@ std::uint64_t MapReader::count(std::string_view key, NumberRange range) const {
   const Document& value = require(key);
   const auto natural = integer<std::uint64_t>(value);
   if (!natural)
-    fail("E0541",
-         where(value),
-         fmt::format("{}: expected a whole number of at least {}",
-                     path_of(key),
-                     shortest(std::max(range.lowest, 0.0))),
-         shown(value),
-         "");
+    throw input_error("E0541", where(value))
+        .says("{}: expected a whole number of at least {}",
+              path_of(key),
+              shortest(std::max(range.lowest, 0.0)))
+        .got(shown(value));
   checked(key, value, range);
   return *natural;
 }
@@ -184,11 +167,9 @@ std::uint64_t MapReader::count(std::string_view key, NumberRange range) const {
 std::int64_t MapReader::whole(std::string_view key) const {
   const Document& value = require(key);
   if (const auto number = integer<std::int64_t>(value)) return *number;
-  fail("E0541",
-       where(value),
-       fmt::format("{}: expected a whole number of 64 bits", path_of(key)),
-       shown(value),
-       "");
+  throw input_error("E0541", where(value))
+      .says("{}: expected a whole number of 64 bits", path_of(key))
+      .got(shown(value));
 }
 
 std::uint64_t MapReader::count_or(std::string_view key, std::uint64_t fallback) const {
@@ -199,11 +180,8 @@ std::string MapReader::text(std::string_view key) const {
   const Document& value = require(key);
   // A name such as 1, no or true is a name.
   if (value.kind == Document::Kind::list || value.kind == Document::Kind::map)
-    fail("E0541",
-         where(value),
-         fmt::format("{}: expected a text, found {}", path_of(key), kind_name(value.kind)),
-         "",
-         "");
+    throw input_error("E0541", where(value))
+        .says("{}: expected a text, found {}", path_of(key), kind_name(value.kind));
   return value.text;
 }
 
@@ -215,22 +193,19 @@ bool MapReader::flag_or(std::string_view key, bool fallback) const {
   const Document* value = get(key);
   if (value == nullptr) return fallback;
   if (value->kind == Document::Kind::boolean) return value->boolean;
-  fail("E0541",
-       where(*value),
-       fmt::format("{}: expected true or false", path_of(key)),
-       shown(*value),
-       "");
+  throw input_error("E0541", where(*value))
+      .says("{}: expected true or false", path_of(key))
+      .got(shown(*value));
 }
 
 std::string MapReader::word(std::string_view key, const std::vector<std::string>& words) const {
   const std::string found = text(key);
   if (std::find(words.begin(), words.end(), found) != words.end()) return found;
   const auto near = nearest(found, words);
-  fail("E0544",
-       where(require(key)),
-       fmt::format("{}: expected one of {}", path_of(key), fmt::join(words, ", ")),
-       found,
-       did_you_mean(near));
+  throw input_error("E0544", where(require(key)))
+      .says("{}: expected one of {}", path_of(key), fmt::join(words, ", "))
+      .got(found)
+      .hint(did_you_mean(near));
 }
 
 std::pair<double, double> MapReader::interval(std::string_view key) const {
@@ -249,11 +224,9 @@ Interval MapReader::interval_in(std::string_view key, const Document& value) con
     right = none || end.kind == Document::Kind::number;
   }
   if (right && ends[0] <= ends[1]) return {ends[0], ends[1]};
-  fail("E0543",
-       where(value),
-       fmt::format("{}: expected two numbers [low, high], the lower first", path_of(key)),
-       shown(value),
-       "");
+  throw input_error("E0543", where(value))
+      .says("{}: expected two numbers [low, high], the lower first", path_of(key))
+      .got(shown(value));
 }
 
 std::vector<double> MapReader::numbers(std::string_view key) const {
@@ -277,7 +250,7 @@ std::vector<std::string> MapReader::texts(std::string_view key) const {
   std::vector<std::string> out;
   for (const Document& element : value.list) {
     if (element.kind == Document::Kind::list || element.kind == Document::Kind::map)
-      fail("E0541", where(element), fmt::format("{}: expected texts", path_of(key)), "", "");
+      throw input_error("E0541", where(element)).says("{}: expected texts", path_of(key));
     out.push_back(element.text);
   }
   return out;
@@ -286,24 +259,20 @@ std::vector<std::string> MapReader::texts(std::string_view key) const {
 const std::vector<Document>& MapReader::list(std::string_view key) const {
   const Document& value = require(key);
   if (value.kind == Document::Kind::list) return value.list;
-  fail("E0541",
-       where(value),
-       fmt::format("{}: expected a list, found {}", path_of(key), kind_name(value.kind)),
-       value.text,
-       "");
+  throw input_error("E0541", where(value))
+      .says("{}: expected a list, found {}", path_of(key), kind_name(value.kind))
+      .got(value.text);
 }
 
 const std::vector<Document>& MapReader::list(std::string_view key, std::size_t length) const {
   const std::vector<Document>& elements = list(key);
   if (elements.size() == length) return elements;
-  fail("E0982",
-       where(require(key)),
-       fmt::format("{}: {} values, {} expected: one a point of the curve",
-                   path_of(key),
-                   elements.size(),
-                   length),
-       "",
-       "was the report edited? write it again");
+  throw input_error("E0982", where(require(key)))
+      .says("{}: {} values, {} expected: one a point of the curve",
+            path_of(key),
+            elements.size(),
+            length)
+      .hint("was the report edited? write it again");
 }
 
 MapReader MapReader::below(const Document& node,
@@ -338,11 +307,10 @@ void MapReader::refuse(std::string_view key,
                        const std::string& hint) const {
   const DocumentEntry* entry = node_->find(key);
   const Document& at = entry != nullptr ? entry->value : *node_;
-  fail("E0545",
-       where(at),
-       fmt::format("{}: {}", path_of(key), what),
-       entry != nullptr ? at.text : "",
-       hint);
+  throw input_error("E0545", where(at))
+      .says("{}: {}", path_of(key), what)
+      .got(entry != nullptr ? at.text : "")
+      .hint(hint);
 }
 
 void check_format(const Document& document,
@@ -353,36 +321,35 @@ void check_format(const Document& document,
   const std::string begin = fmt::format(
       "a {} file begins with \"format: {}\" and \"version: {}\"", format, format, version);
   if (document.kind != Document::Kind::map)
-    fail("E0546",
-         document.line > 0 ? at(document) : file,
-         "is no " + std::string(format),
-         shown(document),
-         begin);
+    throw input_error("E0546", document.line > 0 ? at(document) : file)
+        .says("is no " + std::string(format))
+        .got(shown(document))
+        .hint(begin);
   const DocumentEntry* kind = document.find("format");
-  if (kind == nullptr) fail("E0546", at(document), "the key format is missing", "", begin);
+  if (kind == nullptr)
+    throw input_error("E0546", at(document)).says("the key format is missing").hint(begin);
   if (kind->value.text != format)
-    fail("E0546",
-         at(kind->value),
-         fmt::format("expected the format {}", format),
-         shown(kind->value),
-         "");
+    throw input_error("E0546", at(kind->value))
+        .says("expected the format {}", format)
+        .got(shown(kind->value));
   const DocumentEntry* number = document.find("version");
-  if (number == nullptr) fail("E0546", at(document), "the key version is missing", "", begin);
+  if (number == nullptr)
+    throw input_error("E0546", at(document)).says("the key version is missing").hint(begin);
   const Document& value = number->value;
   if (value.kind == Document::Kind::number && value.whole &&
       value.number == static_cast<double>(version))
     return;
   const bool newer = value.kind == Document::Kind::number && value.whole &&
                      value.number > static_cast<double>(version);
-  fail("E0546",
-       at(value),
-       newer ? fmt::format("version {} of the format {} is newer than this program, which reads {}",
-                           value.text,
-                           format,
-                           version)
-             : fmt::format("expected version: {}", version),
-       shown(value),
-       newer ? "update sensorchar" : "");
+  throw input_error("E0546", at(value))
+      .says(newer ? fmt::format(
+                        "version {} of the format {} is newer than this program, which reads {}",
+                        value.text,
+                        format,
+                        version)
+                  : fmt::format("expected version: {}", version))
+      .got(shown(value))
+      .hint(newer ? "update sensorchar" : "");
 }
 
 }  // namespace libchar

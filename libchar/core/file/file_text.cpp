@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -16,12 +16,7 @@ namespace {
 constexpr std::size_t kPiece = std::size_t{1} << 16U;
 
 [[noreturn]] void fail_to(const char* be, const std::string& path) {
-  throw Error({ErrorKind::input,
-               "E0101",
-               path,
-               fmt::format("cannot be {}: {}", be, std::strerror(errno)),
-               "",
-               ""});
+  throw input_error("E0101", path).says("cannot be {}: {}", be, std::strerror(errno));
 }
 
 struct OpenFile {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/spelling.hpp"
 
@@ -21,7 +21,7 @@ std::string either(const std::vector<std::string>& words) {
 }  // namespace
 
 void refuse_check(std::string_view text, const std::string& what, const std::string& hint) {
-  throw Error({ErrorKind::usage, "E0922", "`check`", what, std::string(text), hint});
+  throw usage_error("E0922", "`check`").says(what).got(std::string(text)).hint(hint);
 }
 
 GrowthCheck parse_growth_check(std::string_view text, const GrowthWords& words) {

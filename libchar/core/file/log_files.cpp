@@ -5,8 +5,7 @@
 #include <map>
 
 #include "libchar/core/document/document.hpp"
-#include "libchar/core/document/document_file.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -17,23 +16,16 @@ constexpr const char* kMetadata = "metadata.yaml";
 constexpr std::string_view kInformation = "rosbag2_bagfile_information";
 constexpr const char* kWriteAgain = "ros2 bag reindex writes it again";
 
-[[noreturn]] void refuse_recording(const std::string& file,
-                                   std::string what,
-                                   std::string got,
-                                   std::string hint) {
-  throw Error({ErrorKind::input, "E0448", file, std::move(what), std::move(got), std::move(hint)});
-}
-
 // Only its name counts: old recordings have the folder in front of it, and nothing outside the folder is opened.
 std::string part_in(const fs::path& folder, const std::string& said, const std::string& file) {
   const fs::path name = fs::path(said).filename();
   const fs::path part = folder / name;
   std::error_code none;
   if (name.empty() || !fs::is_regular_file(part, none))
-    refuse_recording(file,
-                     "names a part of the recording that is not there",
-                     said,
-                     "copy it into the folder; of what is there ros2 bag reindex makes a new list");
+    throw input_error("E0448", file)
+        .says("names a part of the recording that is not there")
+        .got(said)
+        .hint("copy it into the folder; of what is there ros2 bag reindex makes a new list");
   return part.string();
 }
 
@@ -63,8 +55,9 @@ std::vector<std::string> files_of_log(const std::string& file) {
   const DocumentEntry* const parts =
       about == nullptr ? nullptr : about->value.find("relative_file_paths");
   if (parts == nullptr || parts->value.kind != Document::Kind::list || parts->value.list.empty())
-    refuse_recording(
-        file, "lists no parts of the recording (relative_file_paths)", "", kWriteAgain);
+    throw input_error("E0448", file)
+        .says("lists no parts of the recording (relative_file_paths)")
+        .hint(kWriteAgain);
   for (const Document& part : parts->value.list)
     files.push_back(part_in(fs::path(file).parent_path(), part.text, file));
   return files;

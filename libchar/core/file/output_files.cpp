@@ -5,12 +5,12 @@
 #include <set>
 
 #include "libchar/core/detail/output_journal.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 
@@ -21,12 +21,8 @@ void make_folder(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem)
-    throw Error({ErrorKind::output,
-                 "E0505",
-                 folder.string(),
-                 "cannot make this folder: " + problem.message(),
-                 "",
-                 ""});
+    throw output_error("E0505", folder.string())
+        .says("cannot make this folder: " + problem.message());
 }
 
 /// Of a document that is replaced; a larger one is none of ours.
@@ -100,12 +96,9 @@ void refuse_itself(const std::string& input, const std::string& output) {
   if (!std::filesystem::is_regular_file(input, ignored) ||
       !std::filesystem::equivalent(input, output, ignored))
     return;
-  throw Error({ErrorKind::output,
-               "E0504",
-               output,
-               "is the input itself; an input is never overwritten",
-               "",
-               "choose another name"});
+  throw output_error("E0504", output)
+      .says("is the input itself; an input is never overwritten")
+      .hint("choose another name");
 }
 
 void refuse_in_folder(const std::string& input, const std::string& output) {
@@ -115,12 +108,10 @@ void refuse_in_folder(const std::string& input, const std::string& output) {
   if (folder.empty() || !fs::is_regular_file(file, ignored)) return;
   const auto apart = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
   if (apart.first != folder.end() || !is_of_results(folder, file)) return;
-  throw Error({ErrorKind::output,
-               "E0504",
-               output,
-               "is part of the input; an input is never overwritten",
-               input,
-               "choose another name"});
+  throw output_error("E0504", output)
+      .says("is part of the input; an input is never overwritten")
+      .got(input)
+      .hint("choose another name");
 }
 
 std::filesystem::path folder_of(const WholeFile& file) {
@@ -271,14 +262,11 @@ void refuse_interrupted(const std::filesystem::path& folder_or_file) {
   auto folder = whole ? folder_or_file : folder_or_file.parent_path();
   if (folder.empty()) folder = ".";
   if (whole ? !has_journal(folder) : !journal_names(folder, folder_or_file.filename())) return;
-  throw Error(
-      {ErrorKind::output,
-       "E0516",
-       folder.string(),
-       "a run was interrupted while it gave its results their names: some files here may be "
-       "older than others",
-       "",
-       "run it again into this folder"});
+  throw output_error("E0516", folder.string())
+      .says(
+          "a run was interrupted while it gave its results their names: some files here may be "
+          "older than others")
+      .hint("run it again into this folder");
 }
 
 }  // namespace libchar

@@ -1,11 +1,13 @@
 #include "libchar/core/file/unfinished_files.hpp"
 
+#include <fcntl.h>
 #include <sched.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <set>
+#include <string>
 
 namespace libchar {
 namespace {
@@ -71,6 +73,16 @@ Discarded discard_unfinished() noexcept {
   if (unfinished != nullptr)
     for (const std::string& path : *unfinished) ::unlink(path.c_str());
   return some_have_names ? Discarded::some_written : Discarded::nothing_written;
+}
+
+int open_nameless(const std::filesystem::path& folder) {
+  const std::filesystem::path place = folder.empty() ? "." : folder;
+  const int nameless = ::open(place.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (nameless >= 0) return nameless;
+  std::string name = place / ".libchar-XXXXXX";  // a file system without nameless files
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
 }
 
 }  // namespace libchar

@@ -2,6 +2,7 @@
 // What a program has on disk under temporary names, so that a signal's handler can take it away and end the program at once,
 // wherever it is: in a library's loop that never asks, or in a reading that does not return.
 
+#include <filesystem>
 #include <string>
 
 namespace libchar {
@@ -29,5 +30,9 @@ enum class Discarded {
 /// nothing, and no thread can be within the list while one of its own handlers runs). Unless it says not_now, whoever opens or
 /// names an output afterwards waits for ever.
 Discarded discard_unfinished() noexcept;
+
+/// A file for reading and writing in `folder` ("" is the current one) that has no name: it is gone when its descriptor is
+/// closed, however the program ends. -1 and errno where the folder does not let it be.
+int open_nameless(const std::filesystem::path& folder);
 
 }  // namespace libchar

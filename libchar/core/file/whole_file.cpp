@@ -15,8 +15,8 @@
 #include <memory>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -70,32 +70,25 @@ int own_descriptor(std::string path) {
   return -1;
 }
 
-[[noreturn]] void refuse(std::string code,
-                         const std::string& path,
-                         std::string what,
-                         std::string hint) {
-  throw Error({ErrorKind::output, std::move(code), path, std::move(what), "", std::move(hint)});
-}
-
 // What can be said of a name before anything is opened.
 void refuse_name(const std::string& path, bool overwrite) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
-    refuse("E0502", path, "is a folder, a file was expected", "name a file inside it");
+    throw output_error("E0502", path)
+        .says("is a folder, a file was expected")
+        .hint("name a file inside it");
   if (::lstat(path.c_str(), &status) != 0) return;
   if (!overwrite)
-    refuse("E0503",
-           path,
-           "exists already and is left as it is",
-           "choose another name or pass `overwrite`");
+    throw output_error("E0503", path)
+        .says("exists already and is left as it is")
+        .hint("choose another name or pass `overwrite`");
   // Renaming asks for the folder's rights alone; who made a file read-only meant the file. An administrator may
   // write everything, so the bits are looked at too.
   if (S_ISREG(status.st_mode) &&
       ((status.st_mode & 0222U) == 0 || ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0))
-    refuse("E0517",
-           path,
-           "is read-only and is left as it is",
-           "choose another name, or make it writable first");
+    throw output_error("E0517", path)
+        .says("is read-only and is left as it is")
+        .hint("choose another name, or make it writable first");
 }
 
 // A new file in the place of an older one is as private as that was: owner, group and rights are kept, and where the
@@ -113,17 +106,12 @@ void keep_rights(int descriptor, const std::string& path) {
 }  // namespace
 
 void WholeFile::fail(std::string_view doing) const {
-  throw Error({ErrorKind::output,
-               "E0501",
-               path_,
-               fmt::format("cannot {}: {}", doing, std::strerror(errno)),
-               "",
-               ""});
+  throw output_error("E0501", path_).says("cannot {}: {}", doing, std::strerror(errno));
 }
 
 WholeFile::WholeFile(std::string path, bool overwrite)
     : path_(std::move(path)), overwrite_(overwrite) {
-  if (path_.empty()) refuse("E0502", "", "an output file needs a name", "");
+  if (path_.empty()) throw output_error("E0502").says("an output file needs a name");
   if (open_through()) return;
   refuse_name(path_, overwrite_);
   // A file without a name vanishes with the process, however that ends; not every file system offers it.
@@ -200,10 +188,9 @@ void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
     return;
   }
   if (begin_ < 0)
-    refuse("E0501",
-           path_,
-           "this format says at its beginning how long it is, and a pipe cannot be gone back in",
-           "write to a file, or as CSV");
+    throw output_error("E0501", path_)
+        .says("this format says at its beginning how long it is, and a pipe cannot be gone back in")
+        .hint("write to a file, or as CSV");
   flush();
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t n = ::pwrite(descriptor_,

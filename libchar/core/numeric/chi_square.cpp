@@ -9,7 +9,6 @@
 
 #include "libchar/core/numeric/chi_square.hpp"
 
-#include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cassert>

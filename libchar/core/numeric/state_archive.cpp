@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -34,10 +34,6 @@ std::string digest_of(std::string_view bytes) {
   Sha256 digest;
   digest.update(bytes);
   return digest.finish();
-}
-
-[[noreturn]] void refuse_state(const std::string& name, std::string what, std::string hint) {
-  throw Error({ErrorKind::input, "E0723", name, std::move(what), "", std::move(hint)});
 }
 
 const char* const kAgain = "make it again, or copy it again";
@@ -112,25 +108,29 @@ StateReader::StateReader(std::string_view bytes,
                          std::uint32_t version)
     : name_(std::move(name)) {
   if (!bytes.starts_with(kMagic))
-    refuse_state(name_, bytes.empty() ? "is empty" : "is no partial state", kAgain);
+    throw input_error("E0723", name_)
+        .says(bytes.empty() ? "is empty" : "is no partial state")
+        .hint(kAgain);
   if (bytes.size() < kHead + kDigest)
-    refuse_state(name_, fmt::format("is cut: {} bytes", bytes.size()), kAgain);
+    throw input_error("E0723", name_).says("is cut: {} bytes", bytes.size()).hint(kAgain);
   const std::uint64_t found = little(bytes.substr(kMagic.size(), 4));
   const std::uint64_t length = little(bytes.substr(kLengthAt, 8));
   const std::uint64_t present = bytes.size() - kHead - kDigest;
   const bool whole = length == present && digest_of(bytes.substr(0, bytes.size() - kDigest)) ==
                                               bytes.substr(bytes.size() - kDigest);
   if (!whole && length > present)
-    refuse_state(
-        name_, fmt::format("is cut: {} bytes of its content of {}", present, length), kAgain);
-  if (!whole) refuse_state(name_, "is damaged: its digest is another one", kAgain);
+    throw input_error("E0723", name_)
+        .says("is cut: {} bytes of its content of {}", present, length)
+        .hint(kAgain);
+  if (!whole)
+    throw input_error("E0723", name_).says("is damaged: its digest is another one").hint(kAgain);
   rest_ = bytes.substr(kHead, length);
   if (const std::string is = text(); is != kind)
-    refuse_state(name_, fmt::format("is a state of {}, not of {}", is, kind), "");
+    throw input_error("E0723", name_).says("is a state of {}, not of {}", is, kind);
   if (found != version)
-    refuse_state(name_,
-                 fmt::format("is of version {}; this program reads version {}", found, version),
-                 "use one version of the program on all machines");
+    throw input_error("E0723", name_)
+        .says("is of version {}; this program reads version {}", found, version)
+        .hint("use one version of the program on all machines");
 }
 
 std::string_view StateReader::take(std::size_t bytes) {
@@ -141,7 +141,7 @@ std::string_view StateReader::take(std::size_t bytes) {
 }
 
 void StateReader::refuse(std::string_view what) const {
-  refuse_state(name_, fmt::format("contradicts itself: {}", what), kAgain);
+  throw input_error("E0723", name_).says("contradicts itself: {}", what).hint(kAgain);
 }
 
 void StateReader::finish() const {

@@ -1,7 +1,5 @@
 #include "libchar/core/process/free_memory.hpp"
 
-#include <cstdlib>
-
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif

@@ -26,17 +26,9 @@ enum class WorkKind : std::size_t {
 };
 template <>
 inline constexpr auto enum_table<WorkKind> =
-    enum_words<WorkKind>({{WorkKind::passes, "passes"},
-                          {WorkKind::rows, "rows"},
-                          {WorkKind::segments, "segments"},
-                          {WorkKind::cosine_transforms, "cosine_transforms"},
-                          {WorkKind::allan_terms, "allan_terms"},
-                          {WorkKind::descents, "descents"},
-                          {WorkKind::simulated_samples, "simulated_samples"},
-                          {WorkKind::learnt_instants, "learnt_instants"},
-                          {WorkKind::training_steps, "training_steps"},
-                          {WorkKind::fused_instants, "fused_instants"},
-                          {WorkKind::blind_instants, "blind_instants"}});
+    enum_words<WorkKind,
+               "passes rows segments cosine_transforms allan_terms descents simulated_samples "
+               "learnt_instants training_steps fused_instants blind_instants">;
 
 using WorkDone = std::array<std::uint64_t, enum_table<WorkKind>.size()>;
 

@@ -1,8 +1,8 @@
-#include "libchar/core/table/detail/latex.hpp"
-
 #include <span>
 #include <string_view>
 #include <utility>
+
+#include "libchar/core/table/detail/formats.hpp"
 
 namespace libchar {
 namespace {

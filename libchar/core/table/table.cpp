@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/table/detail/latex.hpp"
-#include "libchar/core/table/detail/text_table.hpp"
+#include "libchar/core/table/detail/formats.hpp"
 #include "libchar/core/text/csv_cell.hpp"
 #include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/readable.hpp"

@@ -96,10 +96,7 @@ std::string terminal_table(const Table& table,
 
 enum class TableFormat { markdown, latex, csv };
 template <>
-inline constexpr auto enum_table<TableFormat> =
-    enum_words<TableFormat>({{TableFormat::markdown, "markdown"},
-                             {TableFormat::latex, "latex"},
-                             {TableFormat::csv, "csv"}});
+inline constexpr auto enum_table<TableFormat> = enum_words<TableFormat, "markdown latex csv">;
 /// LaTeX: a tabular that needs no package, without title and note. CSV: columns with a key, texts as
 /// csv_cell, numbers that read back.
 std::string table_text(const Table& table, TableFormat format = TableFormat::markdown);

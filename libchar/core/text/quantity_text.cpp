@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
@@ -16,7 +16,7 @@ namespace {
 using Units = std::initializer_list<std::pair<std::string_view, double>>;
 
 [[noreturn]] void refuse(std::string_view text, const std::string& expected) {
-  throw Error({ErrorKind::usage, "E0201", "", "expected " + expected, std::string(text), ""});
+  throw usage_error("E0201").says("expected " + expected).got(std::string(text));
 }
 
 bool may_follow(char c) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text_table.hpp"

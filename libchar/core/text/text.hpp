@@ -22,4 +22,7 @@ std::string ascii_lower(std::string_view text);
 /// "1 sample", "2 samples".
 std::string plural(std::uint64_t n, std::string_view noun);
 
+/// A word quoted for a POSIX shell where it has to be.
+std::string shell_word(std::string_view word);
+
 }  // namespace libchar

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/table/detail/text_table.hpp"
+#include "libchar/core/table/detail/formats.hpp"
 
 namespace libchar {
 namespace {

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/term_cells.hpp"
 
@@ -218,18 +218,14 @@ Figure positive_figure(const SensorTriad& triad,
   Figure figure = scalar_figure(triad, term, Absent::limit, options);
   if (figure.value) return figure;
   const TermName& name = kTermNames[static_cast<std::size_t>(term)];
-  throw Error(
-      {ErrorKind::input,
-       "E0587",
-       representative(triad, options).model->channel,
-       fmt::format("{} needs {} > 0, and the model has neither a value nor an upper limit of {}",
-                   consumer,
-                   key,
-                   name.key),
-       "",
-       fmt::format("state one in the model file: {}: {{value: …, unit: …, status: given}}",
-                   name.key) +
-           (term == Term::walk ? walk_of_floor(triad, options) : "")});
+  throw input_error("E0587", representative(triad, options).model->channel)
+      .says("{} needs {} > 0, and the model has neither a value nor an upper limit of {}",
+            consumer,
+            key,
+            name.key)
+      .hint(fmt::format("state one in the model file: {}: {{value: …, unit: …, status: given}}",
+                        name.key) +
+            (term == Term::walk ? walk_of_floor(triad, options) : ""));
 }
 
 namespace {
@@ -316,12 +312,9 @@ double rate_of(const SensorTriad& triad, std::vector<std::string>& notes) {
     if (!placed) continue;
     const double own = placed->model->rate_hz;
     if (!(own > 0))
-      throw Error({ErrorKind::input,
-                   "E0588",
-                   placed->model->channel,
-                   "its model names no sampling rate, and the export needs one",
-                   "",
-                   "write rate_hz: into the model file"});
+      throw input_error("E0588", placed->model->channel)
+          .says("its model names no sampling rate, and the export needs one")
+          .hint("write rate_hz: into the model file");
     if (rate == 0) rate = own;
     differ = differ || std::abs(own - rate) > 1e-3 * rate;
   }

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/version.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/text/text.hpp"
@@ -216,12 +216,10 @@ std::string topic_scalar(const std::string& topic) {
   const bool fine = !topic.empty() && std::isdigit(static_cast<unsigned char>(topic[0])) == 0 &&
                     std::all_of(topic.begin(), topic.end(), allowed);
   if (!fine)
-    throw Error({ErrorKind::usage,
-                 "E0589",
-                 "`topic`",
-                 "a ROS topic is made of letters, digits, _ and /, and does not begin with a digit",
-                 topic,
-                 "such as /imu0"});
+    throw usage_error("E0589", "`topic`")
+        .says("a ROS topic is made of letters, digits, _ and /, and does not begin with a digit")
+        .got(topic)
+        .hint("such as /imu0");
   // "~" and "on" would be no texts.
   return topic[0] == '/' ? topic : '"' + topic + '"';
 }

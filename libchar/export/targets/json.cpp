@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/export/detail/target_list.hpp"
-#include "libchar/model/model_json.hpp"
+#include "libchar/model/model_file.hpp"
 
 namespace libchar {
 namespace {

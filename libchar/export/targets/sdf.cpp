@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
@@ -79,12 +79,10 @@ std::string barometer_element(const SensorModel& m, const ExportOptions& options
   const auto unit = find_unit(m.unit);
   SensorTriad triad{"barometer", "Pa", {}, true};
   if (!unit || unit->quantity != Quantity::pressure)
-    throw Error({ErrorKind::input,
-                 "E0583",
-                 m.channel,
-                 "its unit is none of pressure, which a barometer needs",
-                 m.unit,
-                 "write unit: Pa into the model file"});
+    throw input_error("E0583", m.channel)
+        .says("its unit is none of pressure, which a barometer needs")
+        .got(m.unit)
+        .hint("write unit: Pa into the model file");
   triad.axis.fill(PlacedModel{&m, unit->to_si});
   const double rate = rate_of(triad, out.notes);
   const Figure white = scalar_figure(triad, Term::white, Absent::zero, options);
@@ -126,13 +124,11 @@ Export write_sdf(const SensorGroup& group, const ExportOptions& options) {
                                       kind_of(*m)));
   }
   if (sensors.empty())
-    throw Error({ErrorKind::input,
-                 "E0593",
-                 "",
-                 "SDFormat has noise elements for gyroscopes, accelerometers, magnetometers and "
-                 "barometers, and none of these was given",
-                 "",
-                 "where name and unit do not say what a channel is: `axis` NAME=gx"});
+    throw input_error("E0593")
+        .says(
+            "SDFormat has noise elements for gyroscopes, accelerometers, magnetometers and "
+            "barometers, and none of these was given")
+        .hint("where name and unit do not say what a channel is: `axis` NAME=gx");
   out.text = "<?xml version=\"1.0\"?>\n<!--\n";
   out.text += commented(head_lines(group,
                                    options,

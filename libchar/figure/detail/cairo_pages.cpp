@@ -15,8 +15,8 @@
 #include <memory>
 #include <numbers>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/version.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
@@ -58,12 +58,9 @@ Face face_of(bool bold, std::string& family) {
   const Pattern found(FcFontMatch(nullptr, wanted.get(), &result));
   FcChar8* name = nullptr;
   if (!found || FcPatternGetString(found.get(), FC_FAMILY, 0, &name) != FcResultMatch)
-    throw Error({ErrorKind::output,
-                 "E0986",
-                 "",
-                 "no font is installed that a PDF or PNG could have its text in",
-                 "",
-                 "install Debian's package fonts-liberation2; an SVG needs none"});
+    throw output_error("E0986")
+        .says("no font is installed that a PDF or PNG could have its text in")
+        .hint("install Debian's package fonts-liberation2; an SVG needs none");
   family = reinterpret_cast<const char*>(name);
   return Face(cairo_ft_font_face_create_for_pattern(found.get()));
 }
@@ -180,12 +177,9 @@ cairo_status_t append(void* out, const unsigned char* bytes, unsigned length) {
 
 void refuse_failed(cairo_status_t status) {
   if (status == CAIRO_STATUS_SUCCESS) return;
-  throw Error({ErrorKind::output,
-               "E0986",
-               "",
-               std::string("Cairo could not draw the figure: ") + cairo_status_to_string(status),
-               "",
-               "an SVG is drawn without it"});
+  throw output_error("E0986")
+      .says(std::string("Cairo could not draw the figure: ") + cairo_status_to_string(status))
+      .hint("an SVG is drawn without it");
 }
 
 /// Of the environment, as builds that can be repeated set it; empty: no date at all.
@@ -260,14 +254,9 @@ std::string png_of(const Drawing& drawing, double dpi, Findings& warnings) {
   const double width = std::ceil(drawing.width * scale), height = std::ceil(drawing.height * scale);
   if (!(width >= 1 && height >= 1 && width * height <= kMostPixels && width < 32000 &&
         height < 32000))
-    throw Error(
-        {ErrorKind::usage,
-         "E0981",
-         "",
-         fmt::format(
-             "a picture of {:.0f} × {:.0f} pixels is none that can be drawn", width, height),
-         "",
-         "a lower resolution (dpi) gives fewer; an SVG or PDF has none"});
+    throw usage_error("E0981")
+        .says("a picture of {:.0f} × {:.0f} pixels is none that can be drawn", width, height)
+        .hint("a lower resolution (dpi) gives fewer; an SVG or PDF has none");
   const Faces faces = faces_of(warnings);
   const Surface surface(cairo_image_surface_create(
       CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height)));

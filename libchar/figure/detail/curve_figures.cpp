@@ -8,8 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "libchar/core/error.hpp"
-#include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
@@ -109,52 +108,40 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
   const ChosenCurve& first = chosen[0];
   for (const ChosenCurve& other : chosen) {
     if (other.curve->unit != first.curve->unit)
-      throw Error({ErrorKind::input,
-                   "E0976",
-                   "",
-                   fmt::format("curves in unlike units do not share an axis: {} in {}, {} in {}",
-                               first.name,
-                               first.curve->unit.empty() ? "1" : first.curve->unit,
-                               other.name,
-                               other.curve->unit.empty() ? "1" : other.curve->unit),
-                   "",
-                   fmt::format("choose some with `channels` ('{}*'), a figure for each unit",
-                               first.curve->channel.substr(0, 3))});
+      throw input_error("E0976")
+          .says("curves in unlike units do not share an axis: {} in {}, {} in {}",
+                first.name,
+                first.curve->unit.empty() ? "1" : first.curve->unit,
+                other.name,
+                other.curve->unit.empty() ? "1" : other.curve->unit)
+          .hint("choose some with `channels` ('{}*'), a figure for each unit",
+                first.curve->channel.substr(0, 3));
     if (other.curve->value_unit != first.curve->value_unit &&
         other.curve->statistic != first.curve->statistic && other.curve->is_allan)
-      throw Error({ErrorKind::input,
-                   "E0976",
-                   "",
-                   fmt::format("curves in unlike units do not share an axis: {} in {}, {} in {}",
-                               first.curve->statistic,
-                               first.curve->value_unit,
-                               other.curve->statistic,
-                               other.curve->value_unit),
-                   "",
-                   "a figure for each unit"});
+      throw input_error("E0976")
+          .says("curves in unlike units do not share an axis: {} in {}, {} in {}",
+                first.curve->statistic,
+                first.curve->value_unit,
+                other.curve->statistic,
+                other.curve->value_unit)
+          .hint("a figure for each unit");
     const std::string &a = first.curve->statistic, &b = other.curve->statistic;
     if (!of_one_kind(a, b) &&
         statistics_of(chosen, first.name) != statistics_of(chosen, other.name))
-      throw Error({ErrorKind::input,
-                   "E0983",
-                   "",
-                   fmt::format("unlike curves do not share an axis: {} is {}, {} is {}",
-                               first.name,
-                               a,
-                               other.name,
-                               b),
-                   "",
-                   "compute both in the same way"});
+      throw input_error("E0983")
+          .says("unlike curves do not share an axis: {} is {}, {} is {}",
+                first.name,
+                a,
+                other.name,
+                b)
+          .hint("compute both in the same way");
   }
   if (chosen.size() > kMostCurves)
-    throw Error({ErrorKind::usage,
-                 "E0984",
-                 "",
-                 fmt::format("{} curves: more than {} cannot be told apart in one figure",
-                             chosen.size(),
-                             kMostCurves),
-                 "",
-                 "choose some with `channels`"});
+    throw usage_error("E0984")
+        .says("{} curves: more than {} cannot be told apart in one figure",
+              chosen.size(),
+              kMostCurves)
+        .hint("choose some with `channels`");
 }
 
 std::vector<ChosenCurve> chosen_curves(std::span<const FigureSource> sources,
@@ -167,9 +154,8 @@ std::vector<ChosenCurve> chosen_curves(std::span<const FigureSource> sources,
        }))
     out.push_back({curve, name});
   if (out.empty())
-    refuse_kind(sources[0],
-                is_allan ? "allan" : "psd",
-                is_allan ? "it holds no Allan curve" : "it holds no spectrum");
+    throw kind_refusal(sources[0], is_allan ? "allan" : "psd")
+        .says(is_allan ? "it holds no Allan curve" : "it holds no spectrum");
   refuse_unlike(out);
   name_by_statistic(out);
   return out;
@@ -386,7 +372,8 @@ Chart residuals_figure(std::span<const FigureSource> sources, const FigureOption
   constexpr double kLargest = 20;
   const auto chosen = chosen_parts(
       sources, options, &FigureSource::residuals, [](const SourceResiduals&) { return true; });
-  if (chosen.empty()) refuse_kind(sources[0], "residuals", "it holds no residuals of a fit");
+  if (chosen.empty())
+    throw kind_refusal(sources[0], "residuals").says("it holds no residuals of a fit");
   Chart out;
   Extent x(true);
   double largest = 0;
@@ -427,22 +414,19 @@ Chart residuals_figure(std::span<const FigureSource> sources, const FigureOption
 Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   const auto chosen = chosen_parts(
       sources, options, &FigureSource::traces, [](const SourceTrace&) { return true; });
-  if (chosen.empty()) refuse_kind(sources[0], "trace", "it holds no recording");
+  if (chosen.empty()) throw kind_refusal(sources[0], "trace").says("it holds no recording");
   Chart out;
   Extent x(false), y(false);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     const auto& [trace, name] = chosen[k];
     if (trace->unit != chosen[0].first->unit)
-      throw Error({ErrorKind::input,
-                   "E0976",
-                   "",
-                   fmt::format("records in unlike units do not share an axis: {} in {}, {} in {}",
-                               chosen[0].second,
-                               chosen[0].first->unit,
-                               name,
-                               trace->unit),
-                   "",
-                   "choose some with `channels`, a figure for each unit"});
+      throw input_error("E0976")
+          .says("records in unlike units do not share an axis: {} in {}, {} in {}",
+                chosen[0].second,
+                chosen[0].first->unit,
+                name,
+                trace->unit)
+          .hint("choose some with `channels`, a figure for each unit");
     FigureSeries series;
     series.name = chosen.size() > 1 ? name : "";
     for (std::size_t i = 0; i < trace->low.size(); ++i)

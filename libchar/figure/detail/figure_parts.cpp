@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/units.hpp"
@@ -128,22 +128,16 @@ void refuse_unmatched(const std::vector<std::string>& patterns,
   for (const std::string& pattern : patterns) {
     if (std::any_of(names.begin(), names.end(), [&](const auto& n) { return matches(pattern, n); }))
       continue;
-    throw Error({ErrorKind::usage,
-                 "E0977",
-                 file,
-                 "nothing has this name",
-                 pattern,
-                 did_you_mean(nearest(pattern, names), "there are " + first_names(names))});
+    throw usage_error("E0977", file)
+        .says("nothing has this name")
+        .got(pattern)
+        .hint(did_you_mean(nearest(pattern, names), "there are " + first_names(names)));
   }
 }
 
-void refuse_kind(const FigureSource& source, std::string_view kind, const std::string& why) {
-  throw Error({ErrorKind::usage,
-               "E0978",
-               source.file,
-               fmt::format("no figure `{}` can be drawn of it: {}", kind, why),
-               "",
-               ""});
+Refusal kind_refusal(const FigureSource& source, std::string_view kind) {
+  return usage_error("E0978", source.file)
+      .about(fmt::format("no figure `{}` can be drawn of it", kind));
 }
 
 FigureSeries line_series(const std::string& name,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/figure/figure.hpp"
 #include "libchar/figure/make_figure.hpp"
 
@@ -63,9 +64,7 @@ void refuse_unmatched(const std::vector<std::string>& patterns,
                       const std::string& file);
 
 /// Throws Error(usage): there is no such figure of this source.
-[[noreturn]] void refuse_kind(const FigureSource& source,
-                              std::string_view kind,
-                              const std::string& why);
+Refusal kind_refusal(const FigureSource& source, std::string_view kind);
 
 bool above_zero(double value);
 

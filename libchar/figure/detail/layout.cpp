@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/sheet.hpp"
 
@@ -238,16 +238,12 @@ void draw_bar_notes(Sheet& sheet) {
 }
 
 [[noreturn]] void refuse_size(double width_mm, double height_mm) {
-  throw Error({ErrorKind::usage,
-               "E0981",
-               "",
-               fmt::format("a page of {} × {} mm has no room for a plot with its axes, or is "
-                           "larger than {} mm",
-                           brief_text(width_mm, 4),
-                           brief_text(height_mm, 4),
-                           kLargestMm),
-               "",
-               "one column is 85 mm wide, two are 178 mm"});
+  throw usage_error("E0981")
+      .says("a page of {} × {} mm has no room for a plot with its axes, or is larger than {} mm",
+            brief_text(width_mm, 4),
+            brief_text(height_mm, 4),
+            kLargestMm)
+      .hint("one column is 85 mm wide, two are 178 mm");
 }
 
 Sheet make_sheet(const Chart& figure, const DrawingOptions& options, double legend, Axes& axes) {

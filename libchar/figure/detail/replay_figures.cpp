@@ -135,10 +135,10 @@ Chart cost_figure(std::span<const FigureSource> sources,
   const ShownReplay replay = shown_replay(sources[0], {});
   const std::vector<CostPoint> points = cost_points(replay, options, kind);
   if (points.empty())
-    refuse_kind(sources[0],
-                kind.kind,
-                "no method has both an error and this cost (a replay measures costs unless it is "
-                "told not to)");
+    throw kind_refusal(sources[0], kind.kind)
+        .says(
+            "no method has both an error and this cost (a replay measures costs unless it is told "
+            "not to)");
   Chart out;
   Extent x(true), y(true);
   for (const CostPoint& p : points) {
@@ -247,7 +247,7 @@ void add_ranking_keys(Chart& chart) {
 Chart ranking_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   const ShownReplay replay = shown_replay(sources[0], {});
   const std::vector<const ReplayReport::Algorithm*> rows = ranking_rows(replay, options);
-  if (rows.empty()) refuse_kind(sources[0], "ranking", "no method has a score");
+  if (rows.empty()) throw kind_refusal(sources[0], "ranking").says("no method has a score");
   double least = kNone;
   for (const ReplayReport::Algorithm* one : rows) least = std::fmin(least, one->rmse);
   Chart out;

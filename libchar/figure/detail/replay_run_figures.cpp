@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/figure/detail/replay_figures.hpp"
@@ -22,12 +21,9 @@ constexpr std::size_t kMostSensors = 24;
 template <class Input>
 const Input& of_input(const std::vector<Input>& inputs, const ShownReplay& replay) {
   if (replay.input < inputs.size()) return inputs[replay.input];
-  throw Error({ErrorKind::input,
-               "E0982",
-               replay.report->file,
-               "a list of inputs is too short",
-               "",
-               "was the report edited? write it again"});
+  throw input_error("E0982", replay.report->file)
+      .says("a list of inputs is too short")
+      .hint("was the report edited? write it again");
 }
 
 /// The run, or the stretch of it of which every instant was kept and that holds all that is asked for.
@@ -92,7 +88,8 @@ void take_series(Extent& y, const FigureSeries& series, const FigureAxis& x) {
 }
 
 void refuse_without_run(const FigureSource& source, const ShownReplay& replay, const char* kind) {
-  if (!replay.report->run) refuse_kind(source, kind, "nothing was estimated over its run");
+  if (!replay.report->run)
+    throw kind_refusal(source, kind).says("nothing was estimated over its run");
 }
 
 const FigureLook kReferenceLook{.ink = Ink::black, .dash = 0, .width = 1.3};
@@ -163,7 +160,8 @@ Chart error_figure(std::span<const FigureSource> sources, const FigureOptions& o
   const ReplayReport::Stretch& run = run_shown(replay, options);
   const Timeline& error = of_input(run.inputs, replay).error;
   if (error.empty())
-    refuse_kind(sources[0], "error", "without a reference there is no error over the run");
+    throw kind_refusal(sources[0], "error")
+        .says("without a reference there is no error over the run");
   Chart out;
   set_time_axis(out, replay, options);
   add_run_marks(out, replay);
@@ -190,7 +188,8 @@ Chart window_figure(std::span<const FigureSource> sources, const FigureOptions& 
     take_series(y, out.series.back(), out.x);
   }
   if (out.series.empty())
-    refuse_kind(sources[0], "window", "no method has an error over time (there is no reference)");
+    throw kind_refusal(sources[0], "window")
+        .says("no method has an error over time (there is no reference)");
   if (above_zero(replay.optimum)) {
     y.take(replay.optimum);
     out.series.push_back(line_series("optimum of this scene",
@@ -249,11 +248,11 @@ Chart sensors_over_time(std::span<const FigureSource> sources,
   const ReplayReport::Algorithm* tracked =
       tracked_algorithm(replay, options, variances ? has_variances : has_weights);
   if (tracked == nullptr || !(variances ? has_variances(*tracked) : has_weights(*tracked)))
-    refuse_kind(sources[0],
-                kind,
-                options.algorithm.empty() ? "no method has any" : options.algorithm + " has none");
+    throw kind_refusal(sources[0], kind)
+        .says(options.algorithm.empty() ? "no method has any" : options.algorithm + " has none");
   if (!variances && tracked->weights.size() > 1)
-    refuse_kind(sources[0], kind, "of several inputs there is more than one weight a sensor");
+    throw kind_refusal(sources[0], kind)
+        .says("of several inputs there is more than one weight a sensor");
   const std::vector<double>& last = variances ? tracked->variances : tracked->weights[0];
   const Timeline& track = variances ? tracked->variance_track : tracked->weight_track;
   Chart out;
@@ -347,7 +346,8 @@ Chart faults_figure(std::span<const FigureSource> sources, const FigureOptions& 
          .hollow = noise});
   }
   if (out.bars.empty())
-    refuse_kind(sources[0], "faults", "no fault is known to the scene, and none was found");
+    throw kind_refusal(sources[0], "faults")
+        .says("no fault is known to the scene, and none was found");
   for (const std::size_t i : rows) out.y.rows.push_back(replay.sensors[i]);
   out.y.low = -0.5;
   out.y.high = static_cast<double>(rows.size()) - 0.5;
@@ -373,7 +373,7 @@ Chart error_allan_figure(std::span<const FigureSource> sources, const FigureOpti
     if (!series.x.empty()) out.series.push_back(std::move(series));
   }
   if (out.series.empty())
-    refuse_kind(sources[0], "error-allan", "no method has an Allan curve of its error");
+    throw kind_refusal(sources[0], "error-allan").says("no method has an Allan curve of its error");
   x.pad(1.4);
   y.pad(1.5);
   out.x = {.title = "Averaging time τ [s]", .log = true, .rows = {}};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/whole.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
@@ -56,7 +56,7 @@ ShownReplay shown_replay(const FigureSource& source, const FigureOptions& option
   ShownReplay out;
   out.report = &report;
   if (report.inputs.empty())
-    throw Error({ErrorKind::input, "E0982", report.file, "the list of inputs is empty", "", ""});
+    throw input_error("E0982", report.file).says("the list of inputs is empty");
   out.input = input_asked_for(report, options);
   out.unit = usual_figure_unit(report.inputs[out.input].unit);
   out.optimum = report.reference ? report.inputs[out.input].optimum_rmse : kNone;
@@ -150,13 +150,10 @@ const ReplayReport::Algorithm* tracked_algorithm(
   if (!options.algorithm.empty()) {
     if (const ReplayReport::Algorithm* one = replay.find(options.algorithm)) return one;
     const std::vector<std::string> labels = labels_of(replay);
-    throw Error(
-        {ErrorKind::usage,
-         "E0977",
-         replay.report->file,
-         "no algorithm of this label ran",
-         options.algorithm,
-         did_you_mean(nearest(options.algorithm, labels), "there are " + first_names(labels))});
+    throw usage_error("E0977", replay.report->file)
+        .says("no algorithm of this label ran")
+        .got(options.algorithm)
+        .hint(did_you_mean(nearest(options.algorithm, labels), "there are " + first_names(labels)));
   }
   const ReplayReport::Algorithm* const best = replay.find(replay.report->best);
   if (best != nullptr && has(*best)) return best;

@@ -17,7 +17,6 @@
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
-#include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/nonnegative.hpp"
 

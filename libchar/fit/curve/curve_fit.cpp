@@ -26,13 +26,12 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/curve_likelihood.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
@@ -51,31 +50,34 @@ constexpr std::size_t kMostPoints = 512;  ///< that are fitted one by one
 constexpr double kDigitised =
     1e-6;  ///< relative scatter below which differences of fit mean nothing
 
-[[noreturn]] void refuse(const std::string& what, const std::string& got = "") {
-  throw Error({ErrorKind::input, "E0803", "", what, got});
-}
-
 void check(const DigitisedCurve& curve) {
   if (curve.x.size() != curve.y.size())
-    refuse(fmt::format("the curve has {} abscissae but {} values", curve.x.size(), curve.y.size()));
+    throw input_error("E0803").says(
+        "the curve has {} abscissae but {} values", curve.x.size(), curve.y.size());
   if (!curve.relative_sd.empty() && curve.relative_sd.size() != curve.x.size())
-    refuse("the curve needs as many relative standard deviations as points");
+    throw input_error("E0803").says(
+        "the curve needs as many relative standard deviations as points");
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
     if (!(curve.x[i] > 0) || !std::isfinite(curve.x[i]))
-      refuse(fmt::format("point {} of the curve: the abscissa must be positive", i + 1),
-             fmt::format("{}", curve.x[i]));
+      throw input_error("E0803")
+          .says("point {} of the curve: the abscissa must be positive", i + 1)
+          .got("{}", curve.x[i]);
     if (!(curve.y[i] > 0) || !std::isfinite(curve.y[i]))
-      refuse(fmt::format("point {} of the curve: the value must be positive", i + 1),
-             fmt::format("{}", curve.y[i]));
+      throw input_error("E0803")
+          .says("point {} of the curve: the value must be positive", i + 1)
+          .got("{}", curve.y[i]);
     if (!curve.relative_sd.empty() && !(curve.relative_sd[i] > 0))
-      refuse(fmt::format("point {} of the curve: the standard deviation must be positive", i + 1));
+      throw input_error("E0803").says(
+          "point {} of the curve: the standard deviation must be positive", i + 1);
     if (i > 0 && !(curve.x[i] > curve.x[i - 1]))
-      refuse(fmt::format("point {} of the curve: the abscissae must ascend", i + 1),
-             fmt::format("{}", curve.x[i]));
+      throw input_error("E0803")
+          .says("point {} of the curve: the abscissae must ascend", i + 1)
+          .got("{}", curve.x[i]);
   }
-  if (curve.rate_hz && !(*curve.rate_hz > 0)) refuse("the rate of a curve must be positive");
+  if (curve.rate_hz && !(*curve.rate_hz > 0))
+    throw input_error("E0803").says("the rate of a curve must be positive");
   if (curve.duration_s && !(*curve.duration_s > 0))
-    refuse("the duration of a curve's record must be positive");
+    throw input_error("E0803").says("the duration of a curve's record must be positive");
 }
 
 /// Expectation of unit theta at x, in the exact discrete form when the rate is known.
@@ -398,10 +400,6 @@ void report_residuals(const DigitisedCurve& curve, const CurveJudgement& found, 
   }
 }
 
-}  // namespace
-
-namespace {
-
 Eigen::Map<const Eigen::ArrayXd> array_of(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
@@ -415,14 +413,11 @@ NoiseFit fit_points(const DigitisedCurve& curve,
                     const FitOptions& options,
                     double scale) {
   if (curve.x.size() < count_of(offered)) {
-    throw Error({ErrorKind::numeric,
-                 "E0401",
-                 "",
-                 fmt::format("{} points of the curve are fewer than the {} noise terms to fit",
-                             curve.x.size(),
-                             count_of(offered)),
-                 "",
-                 "digitise more points"});
+    throw numeric_error("E0401")
+        .says("{} points of the curve are fewer than the {} noise terms to fit",
+              curve.x.size(),
+              count_of(offered))
+        .hint("digitise more points");
   }
   CurveProblem problem = problem_of(curve);
   Judge judge;

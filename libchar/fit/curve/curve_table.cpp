@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "libchar/allan/deviation_types.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/text_table.hpp"
 
 namespace libchar {
@@ -104,12 +104,9 @@ class Reader {
 
   void take(const TextRow& row) {
     if (row.cells.size() != width_)
-      throw Error({ErrorKind::input,
-                   "E0304",
-                   fmt::format("{}:{}:1", file_, row.line),
-                   fmt::format("{} fields, {} expected", row.cells.size(), width_),
-                   "",
-                   "each row has a value for each name of the header"});
+      throw input_error("E0304", fmt::format("{}:{}:1", file_, row.line))
+          .says("{} fields, {} expected", row.cells.size(), width_)
+          .hint("each row has a value for each name of the header");
     const auto text = [&](const std::optional<std::size_t>& column) {
       return column ? row.cells[*column].text : "";
     };
@@ -150,11 +147,9 @@ class Reader {
   double number(const TextRow& row, std::size_t c) const {
     const TextCell& cell = row.cells[c];
     if (const auto value = number_in(cell, decimal_)) return *value;
-    throw Error({ErrorKind::input,
-                 "E0311",
-                 fmt::format("{}:{}:{}", file_, row.line, cell.column),
-                 "a number was expected",
-                 cell.text});
+    throw input_error("E0311", fmt::format("{}:{}:{}", file_, row.line, cell.column))
+        .says("a number was expected")
+        .got(cell.text);
   }
 
   // Of the deviation (root), to first order half of the relative sd of its square, which is sqrt(2 / edf) for chi-square.
@@ -205,24 +200,18 @@ class Reader {
 std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan) {
   const auto table = read_text_table(path, kMaxBytes);
   if (!table)
-    throw Error({ErrorKind::input,
-                 "E0801",
-                 path,
-                 fmt::format("a table of curves of more than {} bytes", kMaxBytes),
-                 "",
-                 "is this a log? then leave `curve` out"});
+    throw input_error("E0801", path)
+        .says("a table of curves of more than {} bytes", kMaxBytes)
+        .hint("is this a log? then leave `curve` out");
   const Columns columns = columns_of(table->header.cells, is_allan);
   if (!columns.x || !(columns.root || columns.power)) return std::nullopt;
   Reader reader(path, columns, *table, is_allan);
   for (const TextRow& row : table->rows) reader.take(row);
   auto curves = reader.finish();
   if (curves.empty())
-    throw Error({ErrorKind::input,
-                 "E0802",
-                 path,
-                 is_allan ? "the table holds no Allan curve" : "the table holds no spectrum",
-                 "",
-                 is_allan ? "`curve` psd?" : "`curve` allan?"});
+    throw input_error("E0802", path)
+        .says(is_allan ? "the table holds no Allan curve" : "the table holds no spectrum")
+        .hint(is_allan ? "`curve` psd?" : "`curve` allan?");
   return CurveTable{std::move(curves), table->bytes, table->sha256};
 }
 

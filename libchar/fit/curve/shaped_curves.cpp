@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "libchar/allan/confidence.hpp"
-#include "libchar/allan/gauss_markov_curves.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/fit/detail/band/low_pass.hpp"
 

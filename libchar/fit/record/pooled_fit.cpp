@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
@@ -108,7 +108,7 @@ void without_bounds(NoiseFit& fit) {
 PooledFit fit_pooled(std::span<const RunRecord> records,
                      double rate_hz,
                      const FitOptions& options) {
-  if (records.empty()) throw Error({ErrorKind::usage, "E0205", "", "there is no run to fit"});
+  if (records.empty()) throw usage_error("E0205").says("there is no run to fit");
   const Merged all = merged(records);
   std::uint64_t samples = 0;
   for (const RunRecord& record : records) samples += record.samples;

@@ -168,8 +168,7 @@ struct PowerPart::State {
   void end_run();
 };
 
-PowerPart::PowerPart() : state_(std::make_unique<State>()) {}
-PowerPart::~PowerPart() = default;
+PowerPart::PowerPart() : state_(detail::hidden<State>()) {}
 
 void PowerPart::State::push(std::span<const double> values) {
   while (!values.empty()) {

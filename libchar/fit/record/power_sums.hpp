@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/core/numeric/state_archive.hpp"
 #include "libchar/core/process/shared_blocks.hpp"
 #include "libchar/fit/record/pooled_sums.hpp"
@@ -46,7 +46,6 @@ class PowerPart final : public BlockTaker {
   static constexpr std::uint64_t kBlock = std::uint64_t{1} << 15U;
 
   PowerPart();
-  ~PowerPart() override;
   void push(std::span<const double> samples) override;
   bool take_block(std::span<const double> samples) override;
   void take_power(std::vector<double> power) override;
@@ -56,7 +55,7 @@ class PowerPart final : public BlockTaker {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 /// Adds the part that follows directly.

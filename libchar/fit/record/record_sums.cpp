@@ -55,12 +55,22 @@ void double_shortest(PieceVariances& pieces) {
   pieces.shortest *= 2;
 }
 
-}  // namespace
-
-std::uint64_t PieceVariances::length(std::size_t octave) const {
-  return std::max(shortest, kWindowsOfPiece << octave);
+template <class Archive, class Pieces>
+void pieces_layout(Archive& at, Pieces& pieces) {
+  at(pieces.shortest);
+  at.list(pieces.variance, 8, [&](auto& variances) { at(variances); });
 }
 
+PieceVariances read_piece_variances(StateReader& from) {
+  PieceVariances pieces;
+  pieces_layout(from, pieces);
+  if (!std::has_single_bit(pieces.shortest) || pieces.shortest < PieceVariances::kShortest ||
+      pieces.variance.size() > 48)
+    from.refuse("the pieces of a channel");
+  return pieces;
+}
+
+/// The Allan sums of a leaf, and its pieces'.
 AllanSums sums_of_pieces(std::span<const double> leaf, PieceVariances& pieces) {
   struct Node {
     std::uint64_t samples = 0;
@@ -92,6 +102,12 @@ AllanSums sums_of_pieces(std::span<const double> leaf, PieceVariances& pieces) {
   return nodes.empty() ? AllanSums{} : std::move(nodes[0].sums);
 }
 
+}  // namespace
+
+std::uint64_t PieceVariances::length(std::size_t octave) const {
+  return std::max(shortest, kWindowsOfPiece << octave);
+}
+
 void join(PieceVariances& pieces, const PieceVariances& later_as_it_is) {
   PieceVariances later = later_as_it_is;
   while (pieces.shortest < later.shortest) double_shortest(pieces);
@@ -104,23 +120,8 @@ void join(PieceVariances& pieces, const PieceVariances& later_as_it_is) {
     double_shortest(pieces);
 }
 
-template <class Archive, class Pieces>
-static void pieces_layout(Archive& at, Pieces& pieces) {
-  at(pieces.shortest);
-  at.list(pieces.variance, 8, [&](auto& variances) { at(variances); });
-}
-
 void write_state(const PieceVariances& pieces, StateWriter& to) {
   pieces_layout(to, pieces);
-}
-
-PieceVariances read_piece_variances(StateReader& from) {
-  PieceVariances pieces;
-  pieces_layout(from, pieces);
-  if (!std::has_single_bit(pieces.shortest) || pieces.shortest < PieceVariances::kShortest ||
-      pieces.variance.size() > 48)
-    from.refuse("the pieces of a channel");
-  return pieces;
 }
 
 namespace {

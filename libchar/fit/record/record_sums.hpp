@@ -34,14 +34,10 @@ struct PieceVariances {
   std::uint64_t length(std::size_t octave) const;
 };
 
-/// The Allan sums of a leaf, and its pieces'.
-AllanSums sums_of_pieces(std::span<const double> leaf, PieceVariances& pieces);
-
 /// Adds those of the part that follows directly.
 void join(PieceVariances& pieces, const PieceVariances& later);
 
 void write_state(const PieceVariances& pieces, StateWriter& to);
-PieceVariances read_piece_variances(StateReader& from);
 
 /// Of the samples as they are, or without spikes.
 struct FittedSums {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -87,12 +87,10 @@ EventSeries event_series(std::span<const double> whole, double rate_hz, std::uin
     series.value.push_back(mean_present(record.subspan(i * series.per_point, series.per_point)));
   while (!series.value.empty() && std::isnan(series.value.back())) series.value.pop_back();
   if (series.value.size() < kFewest)
-    throw Error({ErrorKind::numeric,
-                 "E0401",
-                 "",
-                 "too few samples to look for steps and drifts",
-                 std::to_string(record.size()) + " samples",
-                 "use a record of at least 64 samples"});
+    throw numeric_error("E0401")
+        .says("too few samples to look for steps and drifts")
+        .got(std::to_string(record.size()) + " samples")
+        .hint("use a record of at least 64 samples");
   bridge(series.value, series.start_s, series.step_s, series.unseen_s);
   return series;
 }

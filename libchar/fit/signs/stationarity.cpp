@@ -268,10 +268,6 @@ std::string sentence_of(const Stationarity& found, double limit) {
                    : "");
 }
 
-}  // namespace
-
-namespace {
-
 Stationarity test(const Tested& record, const NoiseFit& fit) {
   Stationarity out;
   const double size = static_cast<double>(record.samples);

@@ -13,10 +13,10 @@
 #include <system_error>
 
 #include "libchar/characterize/stretches.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -73,12 +73,9 @@ bool same_log(const fs::path& mine, const fs::path& published) {
 }
 
 [[noreturn]] void damaged(const fs::path& file, const std::string& why) {
-  throw Error({ErrorKind::input,
-               "E0791",
-               file.string(),
-               "this result is damaged: " + why,
-               "",
-               "run the unit again: a damaged result counts as none"});
+  throw input_error("E0791", file.string())
+      .says("this result is damaged: " + why)
+      .hint("run the unit again: a damaged result counts as none");
 }
 
 /// The text under the digest in the first line.
@@ -107,10 +104,8 @@ std::vector<std::string> folders_of_results(
 }  // namespace
 
 void refuse_unwritable(const fs::path& path, int number) {
-  throw Error({ErrorKind::output,
-               "E0790",
-               path.string(),
-               "cannot be written: " + std::generic_category().message(number)});
+  throw output_error("E0790", path.string())
+      .says("cannot be written: " + std::generic_category().message(number));
 }
 
 void make_fleet_folder(const fs::path& folder) {

@@ -11,8 +11,8 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/file/nameless_file.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/file/unfinished_files.hpp"
 
 namespace libchar {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "libchar/core/error.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/refusal.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/fleet/engines/engine_files.hpp"
 
 namespace libchar {
@@ -16,11 +16,9 @@ std::string command_of(const JobOptions& options) {
   const bool one_line = std::none_of(
       program.begin(), program.end(), [](unsigned char c) { return c < ' ' && c != '\t'; });
   if (program.find_first_not_of(" \t") == std::string::npos || !one_line)
-    throw Error({ErrorKind::usage,
-                 "E0205",
-                 "`program`",
-                 "expected a program or a command of one line",
-                 program});
+    throw usage_error("E0205", "`program`")
+        .says("expected a program or a command of one line")
+        .got(program);
   std::error_code ignored;
   // Without a slash a shell seeks it in its PATH, not here.
   const bool path = program.find('/') != std::string::npos;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -173,11 +173,8 @@ void BestAxes::finish_learning() {
     if (square >= 0) square = std::max({square, least, std::numeric_limits<double>::min()});
   choose_all();
   if (!all_.determined)
-    throw Error(
-        {ErrorKind::numeric,
-         "E0856",
-         "",
-         "best-axes: no channels with samples in the learning window determine the inputs"});
+    throw numeric_error("E0856").says(
+        "best-axes: no channels with samples in the learning window determine the inputs");
 }
 
 void BestAxes::choose_all() {

@@ -5,19 +5,16 @@
 #include <limits>
 #include <string>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar::fusion {
 namespace {
 
 void require_channel(Eigen::Index wanted, Eigen::Index channels, const char* option) {
   if (wanted > channels)
-    throw Error(
-        {ErrorKind::usage,
-         "E0855",
-         "",
-         std::string(option) + " must be one of the " + std::to_string(channels) + " channels",
-         std::to_string(wanted)});
+    throw usage_error("E0855")
+        .says(std::string(option) + " must be one of the " + std::to_string(channels) + " channels")
+        .got(std::to_string(wanted));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar::fusion {
 
@@ -102,11 +102,9 @@ BlindGls::BlindGls(const Array& array, const Settings& settings)
       weight_(Eigen::VectorXd::Ones(array.channels)),
       next_(static_cast<double>(std::max<Eigen::Index>(20, 3 * array.channels))) {
   if (gauge_ > array.channels)
-    throw Error({ErrorKind::usage,
-                 "E0855",
-                 "",
-                 "gauge must be one of the " + std::to_string(array.channels) + " channels",
-                 std::to_string(gauge_)});
+    throw usage_error("E0855")
+        .says("gauge must be one of the " + std::to_string(array.channels) + " channels")
+        .got(std::to_string(gauge_));
 }
 
 /// Gains in the gauge, variances in the unit of the samples.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -172,12 +172,10 @@ void KalmanTakensFilter::remark(std::string_view name, Findings& warnings) const
 
 void KalmanTakensTaught::finish_learning() {
   if (filter_.learnt_stretches() >= 2 * filter_.neighbours()) return;
-  throw Error({ErrorKind::numeric,
-               "E0862",
-               "",
-               "the learning window holds fewer than two stretches of the past for each neighbour",
-               std::to_string(filter_.learnt_stretches()),
-               "lengthen the learning window, or ask for fewer neighbours"});
+  throw numeric_error("E0862")
+      .says("the learning window holds fewer than two stretches of the past for each neighbour")
+      .got(std::to_string(filter_.learnt_stretches()))
+      .hint("lengthen the learning window, or ask for fewer neighbours");
 }
 
 }  // namespace libchar::fusion

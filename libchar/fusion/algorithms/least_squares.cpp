@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fusion/detail/variances/error_weights.hpp"
 #include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
@@ -34,12 +34,19 @@ const Eigen::MatrixXd& Triangle::upper() {
   return upper_;
 }
 
+namespace {
+
+/// Rounding of a column of a triangle of so many rows, relative to the column's length: errors of
+/// the folds add up as steps of a random walk do.
 double rounding_of_rows(std::int64_t rows) {
   constexpr double kSteps = 32;  // tried with five columns of 2e3 to 2e5 rows
   return kSteps * std::numeric_limits<double>::epsilon() *
          std::sqrt(static_cast<double>(std::max<std::int64_t>(rows, 1)));
 }
 
+/// argmin |A w - b| from the triangle of rows [A b]: columns scaled to length one, then QR with
+/// pivoting; the shortest w where several do as well. Columns count as dependent when less than
+/// `rounding` of them is left beside the others; `dependent` receives their number.
 Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
                              Eigen::Index unknowns,
                              double rounding,
@@ -53,14 +60,8 @@ Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
   return (scaled.x.array() / length.array()).matrix();
 }
 
-namespace {
-
 /// A gain below so many of its own standard deviations may as well be zero.
 constexpr double kSignificant = 4;
-
-[[noreturn]] void cannot(const std::string& what, const std::string& hint) {
-  throw Error({ErrorKind::numeric, "E0856", "", what, "", hint});
-}
 
 }  // namespace
 
@@ -85,8 +86,9 @@ Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
   a << upper.col(0), upper.col(n_ + 1);
   const double moves = a.col(1).tail(a.rows() - 1).norm();
   if (!(moves > 1e-12 * a.col(1).norm()))
-    cannot("the reference does not move in the learning window: no gain can be learnt",
-           "set calibrate to 0, or learn elsewhere");
+    throw numeric_error("E0856")
+        .says("the reference does not move in the learning window: no gain can be learnt")
+        .hint("set calibrate to 0, or learn elsewhere");
   const Eigen::Vector2d length = a.colwise().norm().transpose();
   const Eigen::MatrixXd lines =
       least_squares(a * length.cwiseInverse().asDiagonal(), upper.middleCols(1, n_));
@@ -132,7 +134,8 @@ std::vector<Eigen::Index> WeightLearner::originals(const Eigen::MatrixXd& error,
     if (std::find(learnt.without_signal.begin(), learnt.without_signal.end(), i) ==
         learnt.without_signal.end())
       used.push_back(i);
-  if (used.empty()) cannot("no channel follows the reference in the learning window", "");
+  if (used.empty())
+    throw numeric_error("E0856").says("no channel follows the reference in the learning window");
   const Eigen::MatrixXd own = error(Eigen::all, used);
   for (const auto& [copy, original] :
        copies_of(own, own.colwise() + truth, rounding_of_rows(triangle_.rows())))
@@ -213,10 +216,11 @@ LearntWeights WeightLearner::weights(const LeastSquaresForm& form) {
   learnt.gain = Eigen::VectorXd::Ones(n_);
   learnt.bias = learnt.weights = Eigen::VectorXd::Zero(n_);
   if (!enough())
-    cannot("the learning window has " + std::to_string(triangle_.rows()) +
-               " instants in which every channel has a sample; " + std::to_string(n_ + 2) +
-               " are needed for " + std::to_string(n_) + " channels",
-           "a longer window, or fewer channels");
+    throw numeric_error("E0856")
+        .says("the learning window has " + std::to_string(triangle_.rows()) +
+              " instants in which every channel has a sample; " + std::to_string(n_ + 2) +
+              " are needed for " + std::to_string(n_) + " channels")
+        .hint("a longer window, or fewer channels");
   const Eigen::MatrixXd error =
       form.calibrate ? calibrate(upper, learnt) : Eigen::MatrixXd(upper.middleCols(1, n_));
   const Eigen::VectorXd truth = upper.col(n_ + 1) + origin_ * upper.col(0);
@@ -258,7 +262,7 @@ void LearntMean::exchange(LearntExchange& with, Eigen::Index channels) {
   with.number("variance", learnt.variance);
   if (!with.taking_in()) return;
   if ((learnt.gain.array() == 0).any())
-    throw Error({ErrorKind::input, "E0866", "", "learnt.gains: a gain of zero"});
+    throw input_error("E0866").says("learnt.gains: a gain of zero");
   take(learnt);
 }
 

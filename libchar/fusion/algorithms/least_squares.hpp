@@ -39,18 +39,6 @@ class Triangle {
   std::int64_t rows_ = 0;
 };
 
-/// Rounding of a column of a triangle of so many rows, relative to the column's length: errors of
-/// the folds add up as steps of a random walk do.
-double rounding_of_rows(std::int64_t rows);
-
-/// argmin |A w - b| from the triangle of rows [A b]: columns scaled to length one, then QR with
-/// pivoting; the shortest w where several do as well. Columns count as dependent when less than
-/// `rounding` of them is left beside the others; `dependent` receives their number.
-Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
-                             Eigen::Index unknowns,
-                             double rounding,
-                             Eigen::Index& dependent);
-
 /// What a learning window says about channels and weights.
 struct LearntWeights {
   Eigen::VectorXd gain, bias;       ///< a and b; 1 and 0 without calibration

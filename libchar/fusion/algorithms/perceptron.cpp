@@ -6,7 +6,7 @@
 #include <numeric>
 #include <string>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fusion/detail/network/network_training.hpp"
 
 namespace libchar::fusion {
@@ -91,36 +91,29 @@ void Perceptron::finish_learning() {
   const auto held_out = static_cast<std::size_t>(held_out_ * static_cast<double>(kept_));
   const std::size_t training = kept_ - held_out;
   if (training < 2 * network_.size() || held_out == 0)
-    throw Error({ErrorKind::numeric,
-                 "E0860",
-                 "",
-                 "the learning window holds fewer than two instants for each weight of the "
-                 "perceptron (" +
-                     std::to_string(network_.size()) + " weights)",
-                 std::to_string(training),
-                 "set fewer neurons, or lengthen the learning window"});
+    throw numeric_error("E0860")
+        .says(
+            "the learning window holds fewer than two instants for each weight of the perceptron "
+            "(" +
+            std::to_string(network_.size()) + " weights)")
+        .got(std::to_string(training))
+        .hint("set fewer neurons, or lengthen the learning window");
   put_in_order();
   standardise();
   if (!std::isfinite(target_.deviation))
-    throw Error(
-        {ErrorKind::numeric,
-         "E0864",
-         "",
-         "the reference stands still in the learning window: a network would learn one number "
-         "and no sensor",
-         "",
-         "learn where the input moves"});
+    throw numeric_error("E0864")
+        .says(
+            "the reference stands still in the learning window: a network would learn one number "
+            "and no sensor")
+        .hint("learn where the input moves");
   const TrainingRows training_rows{window_.data(), training};
   const TrainingRows rest{window_.data() + training * (network_.inputs + 1), held_out};
   Training best = train(
       network_, training_rows, rest, {.starts = starts_, .iterations = iterations_, .seed = seed_});
   if (best.parameters.empty())
-    throw Error({ErrorKind::numeric,
-                 "E0861",
-                 "",
-                 "no training of the perceptron gave finite numbers",
-                 "",
-                 "look for huge values in the learning window"});
+    throw numeric_error("E0861")
+        .says("no training of the perceptron gave finite numbers")
+        .hint("look for huge values in the learning window");
   parameters_ = std::move(best.parameters);
   variance_ = best.held_out_square * target_.deviation * target_.deviation;
   std::vector<double>().swap(window_);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -63,13 +63,11 @@ RandomWeightingPublished::RandomWeightingPublished(const Array& array, const Set
       variances_(squares_),
       weights_(Eigen::VectorXd::Constant(array.channels, 1 / static_cast<double>(array.channels))) {
   if (reference_ >= array.channels || second_ >= array.channels || reference_ == second_)
-    throw Error({ErrorKind::usage,
-                 "E0855",
-                 "",
-                 "random-weighting-published compares with two different channels of the " +
-                     std::to_string(array.channels) + " of the scene",
-                 std::to_string(reference_ + 1) + " and " + std::to_string(second_ + 1),
-                 "set reference_channel and second_channel"});
+    throw usage_error("E0855")
+        .says("random-weighting-published compares with two different channels of the " +
+              std::to_string(array.channels) + " of the scene")
+        .got(std::to_string(reference_ + 1) + " and " + std::to_string(second_ + 1))
+        .hint("set reference_channel and second_channel");
 }
 
 Estimate RandomWeightingPublished::step(const Sample& y) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar::fusion {
@@ -75,12 +75,9 @@ double TiltWindow::gravity_variance() const {
   };
   const double variance = mean_square(Gravity{});
   if (std::isnan(variance))
-    throw Error({ErrorKind::numeric,
-                 "E0863",
-                 "",
-                 "the learning window holds no angle of gravity to tune a tilt filter with",
-                 "",
-                 "look at the accelerometer channels of the scene"});
+    throw numeric_error("E0863")
+        .says("the learning window holds no angle of gravity to tune a tilt filter with")
+        .hint("look at the accelerometer channels of the scene");
   return std::max(variance, 1e-30);
 }
 

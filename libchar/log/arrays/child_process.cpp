@@ -12,8 +12,8 @@
 #include <csignal>
 #include <cstring>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/sanitizer.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -39,11 +39,8 @@ void confine() {
 }
 
 [[noreturn]] void refuse_child(const char* what) {
-  throw Error(
-      {ErrorKind::input,
-       "E0465",
-       "",
-       fmt::format("no process can be started to read it in: {}: {}", what, std::strerror(errno))});
+  throw input_error("E0465").says(
+      "no process can be started to read it in: {}: {}", what, std::strerror(errno));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <span>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
 #include "libchar/log/arrays/child_process.hpp"
@@ -20,17 +20,15 @@ namespace {
 constexpr std::uint64_t kMostListing = std::uint64_t{64} << 20U;
 constexpr std::string_view kHdf5Magic("\x89HDF\r\n\x1a\n", 8);
 
-[[noreturn]] void refuse_hdf5(const std::string& where, std::string what, std::string hint = "") {
-  throw Error({ErrorKind::input, "E0465", where, std::move(what), "", std::move(hint)});
-}
-
 class Hdf5File final : public ArrayContainer {
  public:
   Hdf5File(const std::string& path, std::string kind)
       : file_(path), kind_(std::move(kind)), child_(serve_hdf5, &path) {
     const std::string bytes = next_answer(path, kMostListing);
-    if (!decode(bytes, listing_)) refuse_hdf5(path, "its listing makes no sense");
-    if (!listing_.refusal.empty()) refuse_hdf5(path, listing_.refusal, "copy the file again");
+    if (!decode(bytes, listing_))
+      throw input_error("E0465", path).says("its listing makes no sense");
+    if (!listing_.refusal.empty())
+      throw input_error("E0465", path).says(listing_.refusal).hint("copy the file again");
   }
 
   const std::vector<LogArray>& arrays() const override { return listing_.arrays; }
@@ -61,11 +59,11 @@ class Hdf5File final : public ArrayContainer {
     try {
       child_.ask(std::as_bytes(std::span(&question, 1)));
     } catch (const ChildGone& gone) {
-      refuse_hdf5(where, fmt::format("the HDF5 library {}", gone.why));
+      throw input_error("E0465", where).says("the HDF5 library {}", gone.why);
     }
     const std::string bytes = next_answer(where, expected);
     if (bytes.size() != expected)
-      refuse_hdf5(where, "the HDF5 library gave another number of bytes");
+      throw input_error("E0465", where).says("the HDF5 library gave another number of bytes");
     consumed_ += expected;
     const auto span = std::as_bytes(std::span(bytes));
     return {span.begin(), span.end()};
@@ -77,14 +75,16 @@ class Hdf5File final : public ArrayContainer {
       std::uint64_t size = 0;
       child_.answer(std::as_writable_bytes(std::span(&size, 1)));
       if (size == ~std::uint64_t{0})
-        refuse_hdf5(
-            where, "the HDF5 library cannot read it: it is cut or damaged", "copy the file again");
-      if (size > most) refuse_hdf5(where, "the HDF5 library says too much of it");
+        throw input_error("E0465", where)
+            .says("the HDF5 library cannot read it: it is cut or damaged")
+            .hint("copy the file again");
+      if (size > most)
+        throw input_error("E0465", where).says("the HDF5 library says too much of it");
       std::string bytes(static_cast<std::size_t>(size), '\0');
       child_.answer(std::as_writable_bytes(std::span(bytes)));
       return bytes;
     } catch (const ChildGone& gone) {
-      refuse_hdf5(where, fmt::format("the HDF5 library {} on this file", gone.why));
+      throw input_error("E0465", where).says("the HDF5 library {} on this file", gone.why);
     }
   }
 
@@ -139,12 +139,9 @@ std::unique_ptr<ArrayCursor> Hdf5File::open(std::size_t array,
 
 std::unique_ptr<ArrayContainer> open_hdf5_file(const std::string& path, const std::string& kind) {
   if (!hdf5_is_here())
-    throw Error({ErrorKind::input,
-                 "E0467",
-                 path,
-                 "is a HDF5 file, and this program was built without HDF5",
-                 "",
-                 "install libhdf5-dev and build again, or save the arrays by numpy.savez"});
+    throw input_error("E0467", path)
+        .says("is a HDF5 file, and this program was built without HDF5")
+        .hint("install libhdf5-dev and build again, or save the arrays by numpy.savez");
   return std::make_unique<Hdf5File>(path, kind);
 }
 

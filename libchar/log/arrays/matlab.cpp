@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
 #include "libchar/log/arrays/log_array.hpp"
@@ -97,16 +97,14 @@ class Source {
     return value;
   }
   [[noreturn]] void refuse(std::string what) const {
-    throw Error(
-        {ErrorKind::input,
-         "E0464",
-         fmt::format("{} (byte {})",
-                     file_.path(),
-                     stretch_.first_byte +
-                         (stretch_.packing == Packing::stored ? position() : std::uint64_t{0})),
-         std::move(what),
-         "",
-         "save it again, or copy it again"});
+    throw input_error(
+        "E0464",
+        fmt::format("{} (byte {})",
+                    file_.path(),
+                    stretch_.first_byte +
+                        (stretch_.packing == Packing::stored ? position() : std::uint64_t{0})))
+        .says(std::move(what))
+        .hint("save it again, or copy it again");
   }
 
  private:
@@ -225,13 +223,15 @@ class Matlab5File final : public ArrayContainer {
   explicit Matlab5File(const std::string& path) : file_(path) {
     const std::string head = file_.head(kHeaderBytes);
     if (head.size() < kHeaderBytes)
-      refuse_head(fmt::format("ends at byte {}, inside the {} bytes of a MATLAB file's header",
-                              head.size(),
-                              kHeaderBytes),
-                  "copy it again");
+      throw input_error("E0464", file_.path())
+          .says("ends at byte {}, inside the {} bytes of a MATLAB file's header",
+                head.size(),
+                kHeaderBytes)
+          .hint("copy it again");
     if (head.substr(126) != "IM" && head.substr(126) != "MI")
-      refuse_head("does not begin like a MATLAB file of version 5 or later",
-                  "save it by MATLAB's -v7, SciPy or Octave's -mat7-binary");
+      throw input_error("E0464", file_.path())
+          .says("does not begin like a MATLAB file of version 5 or later")
+          .hint("save it by MATLAB's -v7, SciPy or Octave's -mat7-binary");
     big_endian_ = head.substr(126) == "MI";
     Source top(file_, {0, file_.size(), file_.size(), Packing::stored}, big_endian_);
     top.skip(kHeaderBytes);
@@ -263,10 +263,6 @@ class Matlab5File final : public ArrayContainer {
   }
 
  private:
-  [[noreturn]] void refuse_head(std::string what, std::string hint) const {
-    throw Error({ErrorKind::input, "E0464", file_.path(), std::move(what), "", std::move(hint)});
-  }
-
   // How long it is unpacked stands in the tag within; no more than that is read.
   void add_compressed(std::uint64_t first_byte, std::uint64_t packed) {
     compressed_ = true;

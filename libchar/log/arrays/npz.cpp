@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
 #include "libchar/log/arrays/packed_array.hpp"
@@ -38,18 +38,13 @@ constexpr std::uint64_t kMaxMembers = 100000, kMaxDirectoryBytes = 64U << 20U;
 constexpr std::size_t kMaxMemberName = 1024;
 constexpr std::string_view kLocalMagic = "PK\x03\x04";
 
-[[noreturn]] void refuse_zip(const BinaryFile& file, std::uint64_t byte, std::string what) {
-  throw Error({ErrorKind::input,
-               "E0460",
-               fmt::format("{} (byte {})", file.path(), byte),
-               std::move(what),
-               "",
-               "copy it again, or write it again by numpy.savez"});
+Refusal zip_refusal(const BinaryFile& file, std::uint64_t byte) {
+  return input_error("E0460", fmt::format("{} (byte {})", file.path(), byte))
+      .hint("copy it again, or write it again by numpy.savez");
 }
 
-[[noreturn]] void refuse_member(const BinaryFile& file, const std::string& name, std::string what) {
-  throw Error(
-      {ErrorKind::input, "E0462", fmt::format("{}, {}", file.path(), name), std::move(what)});
+Refusal member_refusal(const BinaryFile& file, const std::string& name) {
+  return input_error("E0462", fmt::format("{}, {}", file.path(), name));
 }
 
 // Little-endian integers of a piece of the file.
@@ -89,9 +84,8 @@ std::uint64_t find_end(const BinaryFile& file) {
     if (at + kEndBytes > text.size()) continue;
     if (Bytes(text).u16(at + 20) == text.size() - at - kEndBytes) return file.size() - tail + at;
   }
-  refuse_zip(file,
-             file.size(),
-             "is cut: its directory, which stands at the end of a ZIP archive, is missing");
+  throw zip_refusal(file, file.size())
+      .says("is cut: its directory, which stands at the end of a ZIP archive, is missing");
 }
 
 // Counts above 16 and 32 bits stand in a record of their own (ZIP64), which a locator before the end record points to.
@@ -101,31 +95,31 @@ std::optional<Directory> find_directory64(const BinaryFile& file, std::uint64_t 
   if (!locator.starts_with("PK\x06\x07")) return std::nullopt;
   const std::uint64_t at = Bytes(locator).u64(8);
   if (at > end || end - at < kEnd64Bytes)
-    refuse_zip(file, end - kLocatorBytes, "points to a directory outside of itself");
+    throw zip_refusal(file, end - kLocatorBytes).says("points to a directory outside of itself");
   const std::string record = text_at(file, at, kEnd64Bytes);
-  if (!record.starts_with("PK\x06\x06")) refuse_zip(file, at, "has a broken end record");
+  if (!record.starts_with("PK\x06\x06"))
+    throw zip_refusal(file, at).says("has a broken end record");
   const Bytes bytes(record);
   return Directory{bytes.u64(48), bytes.u64(40), bytes.u64(32)};
 }
 
 Directory find_directory(const BinaryFile& file) {
   if (!file.head(2).starts_with("PK"))
-    refuse_zip(file, 0, "does not begin like a ZIP archive, which a .npz file is");
-  if (file.size() < kEndBytes) refuse_zip(file, file.size(), "is too short for a ZIP archive");
+    throw zip_refusal(file, 0).says("does not begin like a ZIP archive, which a .npz file is");
+  if (file.size() < kEndBytes)
+    throw zip_refusal(file, file.size()).says("is too short for a ZIP archive");
   const std::uint64_t end = find_end(file);
   const std::string record = text_at(file, end, kEndBytes);
   const Bytes bytes(record);
   Directory directory{bytes.u32(16), bytes.u32(12), bytes.u16(10)};
   if (bytes.u16(4) != 0 && bytes.u16(4) != 0xFFFF)
-    refuse_zip(file, end, "is one piece of an archive in several");
+    throw zip_refusal(file, end).says("is one piece of an archive in several");
   if (const auto large = find_directory64(file, end)) directory = *large;
   if (directory.first_byte > end || directory.bytes > end - directory.first_byte)
-    refuse_zip(file, end, "has a directory that does not fit into it");
+    throw zip_refusal(file, end).says("has a directory that does not fit into it");
   if (directory.members > kMaxMembers || directory.bytes > kMaxDirectoryBytes)
-    refuse_zip(
-        file,
-        end,
-        fmt::format("has {} members, more than the limit of {}", directory.members, kMaxMembers));
+    throw zip_refusal(file, end).says(
+        "has {} members, more than the limit of {}", directory.members, kMaxMembers);
   return directory;
 }
 
@@ -164,35 +158,29 @@ Packing packing_of(std::uint64_t method, std::uint64_t flags, std::string& why_n
 // The data stand behind the local header, whose extra field has a length of its own.
 std::uint64_t data_of(const BinaryFile& file, const ZipMember& member, std::uint64_t local) {
   if (local > file.size() || file.size() - local < kLocalBytes)
-    refuse_zip(file, local, "has a member that begins behind its end");
+    throw zip_refusal(file, local).says("has a member that begins behind its end");
   const std::string header = text_at(file, local, kLocalBytes);
   if (!header.starts_with(kLocalMagic))
-    refuse_zip(file,
-               local,
-               fmt::format("has no member {} where its directory says", printable(member.name)));
+    throw zip_refusal(file, local)
+        .says("has no member {} where its directory says", printable(member.name));
   const std::uint64_t data = local + kLocalBytes + Bytes(header).u16(26) + Bytes(header).u16(28);
   if (data > file.size() || member.stretch.packed_bytes > file.size() - data)
-    refuse_zip(file,
-               local,
-               fmt::format("has a member {} that ends behind its end", printable(member.name)));
+    throw zip_refusal(file, local)
+        .says("has a member {} that ends behind its end", printable(member.name));
   return data;
 }
 
 void check_ratio(const BinaryFile& file, const ZipMember& member) {
   const PackedStretch& s = member.stretch;
   if (s.packing == Packing::stored && s.bytes != s.packed_bytes)
-    refuse_member(
-        file,
-        member.name,
-        fmt::format("is stored in {} bytes and said to have {}", s.packed_bytes, s.bytes));
+    throw member_refusal(file, member.name)
+        .says("is stored in {} bytes and said to have {}", s.packed_bytes, s.bytes);
   if (s.bytes / kDeflateRatio > s.packed_bytes)
-    refuse_member(
-        file,
-        member.name,
-        fmt::format("is said to unpack {} bytes into {}: deflate reaches a ratio of {} at most",
-                    s.packed_bytes,
-                    s.bytes,
-                    kDeflateRatio));
+    throw member_refusal(file, member.name)
+        .says("is said to unpack {} bytes into {}: deflate reaches a ratio of {} at most",
+              s.packed_bytes,
+              s.bytes,
+              kDeflateRatio);
 }
 
 ZipMember read_entry(const BinaryFile& file,
@@ -202,15 +190,15 @@ ZipMember read_entry(const BinaryFile& file,
                      std::size_t* end) {
   const Bytes bytes(text);
   if (at + kEntryBytes > text.size() || text.substr(at, 4) != "PK\x01\x02")
-    refuse_zip(file, byte + at, "has a broken directory");
+    throw zip_refusal(file, byte + at).says("has a broken directory");
   const std::uint64_t name_bytes = bytes.u16(at + 28), extra_bytes = bytes.u16(at + 30);
   const std::size_t name_at = at + kEntryBytes,
                     extra_at = name_at + static_cast<std::size_t>(name_bytes),
                     extra_end = extra_at + static_cast<std::size_t>(extra_bytes);
   *end = extra_end + static_cast<std::size_t>(bytes.u16(at + 32));
-  if (*end > text.size()) refuse_zip(file, byte + at, "has a broken directory");
+  if (*end > text.size()) throw zip_refusal(file, byte + at).says("has a broken directory");
   if (name_bytes > kMaxMemberName)
-    refuse_zip(file, byte + at, fmt::format("has a name of more than {} bytes", kMaxMemberName));
+    throw zip_refusal(file, byte + at).says("has a name of more than {} bytes", kMaxMemberName);
   ZipMember member;
   member.name = std::string(text.substr(name_at, static_cast<std::size_t>(name_bytes)));
   member.crc = static_cast<std::uint32_t>(bytes.u32(at + 16));
@@ -221,7 +209,7 @@ ZipMember read_entry(const BinaryFile& file,
              extra_at,
              extra_end,
              {&member.stretch.bytes, &member.stretch.packed_bytes, &local}))
-    refuse_zip(file, byte + at, "has a member whose size is not said");
+    throw zip_refusal(file, byte + at).says("has a member whose size is not said");
   member.stretch.packing = packing_of(bytes.u16(at + 10), bytes.u16(at + 8), member.why_not);
   member.stretch.first_byte = data_of(file, member, local);
   if (member.why_not.empty()) check_ratio(file, member);
@@ -239,7 +227,7 @@ void refuse_overlap(const BinaryFile& file, const std::vector<ZipMember>& member
   for (std::size_t i = 1; i < sorted.size(); ++i)
     if (sorted[i - 1]->stretch.first_byte + sorted[i - 1]->stretch.packed_bytes >
         sorted[i]->stretch.first_byte)
-      refuse_member(file, sorted[i]->name, "overlaps another member of the archive");
+      throw member_refusal(file, sorted[i]->name).says("overlaps another member of the archive");
 }
 
 // All members in the order of the directory. Throws Error(input) E0460 for what is no whole
@@ -345,13 +333,10 @@ class NpzFile final : public ArrayContainer {
       fits = fits && !__builtin_mul_overflow(bytes, extent, &bytes);
     // A dimension of 0 hides what is senseless beside it, and the array is left out.
     if (fits && bytes <= packed.stretch.bytes - header.data_byte) return;
-    throw Error({ErrorKind::input,
-                 "E0410",
-                 where,
-                 fmt::format("is truncated: its shape needs more than the {} bytes there are",
-                             packed.stretch.bytes - header.data_byte),
-                 "",
-                 "copy it again"});
+    throw input_error("E0410", where)
+        .says("is truncated: its shape needs more than the {} bytes there are",
+              packed.stretch.bytes - header.data_byte)
+        .hint("copy it again");
   }
 
   BinaryFile file_;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/crc32.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar_have.hpp"
 #if LIBCHAR_HAVE_ZLIB
 #include <zlib.h>
@@ -15,15 +15,13 @@
 namespace libchar {
 
 void PackedBytes::refuse(std::string what) const {
-  throw Error({ErrorKind::input,
-               "E0462",
-               fmt::format("{}, {} (byte {})",
-                           file_.path(),
-                           name_,
-                           stretch_.first_byte + std::min(packed_, stretch_.packed_bytes)),
-               std::move(what),
-               "",
-               "copy the file again"});
+  throw input_error("E0462",
+                    fmt::format("{}, {} (byte {})",
+                                file_.path(),
+                                name_,
+                                stretch_.first_byte + std::min(packed_, stretch_.packed_bytes)))
+      .says(std::move(what))
+      .hint("copy the file again");
 }
 
 #if LIBCHAR_HAVE_ZLIB
@@ -98,12 +96,9 @@ struct PackedBytes::Inflater {};
 PackedBytes::PackedBytes(const BinaryFile& file, PackedStretch stretch, std::string name)
     : file_(file), stretch_(stretch), name_(std::move(name)) {
   if (stretch_.packing == Packing::stored) return;
-  throw Error({ErrorKind::input,
-               "E0467",
-               fmt::format("{}, {}", file_.path(), name_),
-               "is compressed, and this program was built without zlib",
-               "",
-               "install zlib1g-dev and build again, or save it without compression"});
+  throw input_error("E0467", fmt::format("{}, {}", file_.path(), name_))
+      .says("is compressed, and this program was built without zlib")
+      .hint("install zlib1g-dev and build again, or save it without compression");
 }
 
 bool PackedBytes::inflate_into(std::span<std::byte>, bool) {
@@ -152,13 +147,9 @@ namespace {
 
 void check_crc(const BinaryFile& file, const PackedArray& array, std::uint32_t found) {
   if (!zlib_is_here() || !array.crc || *array.crc == found) return;
-  throw Error(
-      {ErrorKind::input,
-       "E0462",
-       fmt::format("{}, {}", file.path(), array.name),
-       fmt::format("is damaged: its checksum is {:08x}, {:08x} was expected", found, *array.crc),
-       "",
-       "copy the file again"});
+  throw input_error("E0462", fmt::format("{}, {}", file.path(), array.name))
+      .says("is damaged: its checksum is {:08x}, {:08x} was expected", found, *array.crc)
+      .hint("copy the file again");
 }
 
 // To the end of what is packed, where the checksum is known.

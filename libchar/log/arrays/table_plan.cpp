@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/npy_header.hpp"
@@ -167,12 +167,10 @@ class Planner {
     std::set<std::string> names;
     for (const LogArray& array : arrays_)
       if (!names.insert(path_of(array)).second)
-        throw Error({ErrorKind::input,
-                     "E0307",
-                     file_,
-                     "two arrays have one name",
-                     path_of(array),
-                     "save it again with names that differ"});
+        throw input_error("E0307", file_)
+            .says("two arrays have one name")
+            .got(path_of(array))
+            .hint("save it again with names that differ");
   }
 
   void look_at(std::size_t i, const std::function<double(std::size_t)>& single) {
@@ -284,7 +282,7 @@ class Planner {
     std::set<std::string> names;
     for (const Channel& field : table.topic.fields)
       if (!names.insert(field.name).second)
-        throw Error({ErrorKind::input, "E0307", file_, "two columns have one name", field.name});
+        throw input_error("E0307", file_).says("two columns have one name").got(field.name);
     table.rate_hz = rate_of(key, members);
     table.topic.rate_hz = table.rate_hz;
     plan_.tables.push_back(std::move(table));

@@ -14,8 +14,8 @@
 #include <system_error>
 #include <vector>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 
@@ -80,18 +80,18 @@ const std::byte* FileWindow::load(std::uint64_t byte, std::size_t count) {
 }
 
 BinaryFile::BinaryFile(std::string path) : path_(std::move(path)) {
-  const auto fail = [&](const char* code, std::string what, std::string hint) {
-    throw Error({ErrorKind::input, code, path_, std::move(what), "", std::move(hint)});
-  };
   struct stat status {};
   // Looked at before it is opened: opening a pipe would wait for its writer.
   if (::stat(path_.c_str(), &status) != 0)
-    fail("E0101", fmt::format("cannot be opened: {}", std::strerror(errno)), "");
-  if (S_ISDIR(status.st_mode)) fail("E0101", "is a folder, not a log", "");
+    throw input_error("E0101", path_).says("cannot be opened: {}", std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) throw input_error("E0101", path_).says("is a folder, not a log");
   if (!S_ISREG(status.st_mode))
-    fail("E0103", "is not a regular file; binary formats need one", "copy it to a file first");
+    throw input_error("E0103", path_)
+        .says("is not a regular file; binary formats need one")
+        .hint("copy it to a file first");
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
-  if (descriptor_ < 0) fail("E0101", fmt::format("cannot be opened: {}", std::strerror(errno)), "");
+  if (descriptor_ < 0)
+    throw input_error("E0101", path_).says("cannot be opened: {}", std::strerror(errno));
   size_ = static_cast<std::uint64_t>(status.st_size);
   ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);
 }
@@ -106,17 +106,12 @@ void BinaryFile::read(std::uint64_t offset, std::span<std::byte> to) const {
         ::pread(descriptor_, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0)
-      throw Error({ErrorKind::input,
-                   "E0101",
-                   fmt::format("{} (byte {})", path_, offset + done),
-                   fmt::format("cannot be read: {}", std::strerror(errno))});
+      throw input_error("E0101", fmt::format("{} (byte {})", path_, offset + done))
+          .says("cannot be read: {}", std::strerror(errno));
     if (n == 0)
-      throw Error({ErrorKind::input,
-                   "E0104",
-                   fmt::format("{} (byte {})", path_, offset + done),
-                   "became shorter while it was read",
-                   "",
-                   "read a copy that nobody writes to"});
+      throw input_error("E0104", fmt::format("{} (byte {})", path_, offset + done))
+          .says("became shorter while it was read")
+          .hint("read a copy that nobody writes to");
     done += static_cast<std::size_t>(n);
   }
 }

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/rows.hpp"
 #include "libchar/log/detail/format.hpp"
 
@@ -48,14 +48,13 @@ const Preset& find_preset(const std::string& path, const std::string& wanted) {
     if (preset.name == wanted) return preset;
   const std::string all = preset_names(NumberType::i32, true);
   if (wanted.empty())
-    throw Error({ErrorKind::usage,
-                 "E0468",
-                 path,
-                 "has no header, and which instrument wrote it must be told",
-                 "",
-                 "`preset` one of " + all});
-  throw Error(
-      {ErrorKind::usage, "E0468", path, "no preset of .imu files", wanted, "use one of " + all});
+    throw usage_error("E0468", path)
+        .says("has no header, and which instrument wrote it must be told")
+        .hint("`preset` one of " + all);
+  throw usage_error("E0468", path)
+      .says("no preset of .imu files")
+      .got(wanted)
+      .hint("use one of " + all);
 }
 
 std::uint64_t record_bytes(NumberType type) {
@@ -88,14 +87,12 @@ bool times_rise(const BinaryFile& file, NumberType type) {
 
 [[noreturn]] void refuse_times(const BinaryFile& file, const Preset& preset) {
   const NumberType other = preset.type == NumberType::i32 ? NumberType::f64 : NumberType::i32;
-  throw Error({ErrorKind::input,
-               "E0469",
-               file.path(),
-               fmt::format("does not fit the preset: in records of {} bytes its times do not rise",
-                           record_bytes(preset.type)),
-               std::string(preset.name),
-               times_rise(file, other) ? "they rise as those of " + preset_names(other, false)
-                                       : "is it a .imu file of increments?"});
+  throw input_error("E0469", file.path())
+      .says("does not fit the preset: in records of {} bytes its times do not rise",
+            record_bytes(preset.type))
+      .got(std::string(preset.name))
+      .hint(times_rise(file, other) ? "they rise as those of " + preset_names(other, false)
+                                    : "is it a .imu file of increments?");
 }
 
 double rate_of(const BinaryFile& file, const Preset& preset) {
@@ -103,11 +100,8 @@ double rate_of(const BinaryFile& file, const Preset& preset) {
   const double span = stamp_of(file, rows - 1, preset.type) - stamp_of(file, 0, preset.type);
   const double rate = std::round(static_cast<double>(rows - 1) / span);
   if (!(rate >= 1))
-    throw Error(
-        {ErrorKind::input,
-         "E0469",
-         file.path(),
-         "its times say less than half a record a second; increments need their whole rate"});
+    throw input_error("E0469", file.path())
+        .says("its times say less than half a record a second; increments need their whole rate");
   return rate;
 }
 
@@ -139,7 +133,7 @@ BinaryLayout layout_of(const BinaryFile& file, const Preset& preset, double rate
 std::unique_ptr<RowSource> open_imu(const std::string& path, const ReadOptions& options) {
   auto file = std::make_unique<BinaryFile>(path);
   const Preset& preset = find_preset(path, options.preset);
-  if (file->size() == 0) throw Error({ErrorKind::input, "E0322", path, "the file is empty"});
+  if (file->size() == 0) throw input_error("E0322", path).says("the file is empty");
   if (!times_rise(*file, preset.type)) refuse_times(*file, preset);
   const double rate = rate_of(*file, preset);
   BinaryLayout layout = layout_of(*file, preset, rate);

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/binary/rows.hpp"
 #include "libchar/log/detail/format.hpp"
@@ -12,41 +12,33 @@
 namespace libchar {
 namespace {
 
-[[noreturn]] void refuse_npy(const std::string& where, std::string what, std::string hint = "") {
-  throw Error({ErrorKind::input, "E0410", where, std::move(what), "", std::move(hint)});
-}
-
-[[noreturn]] void refuse_shape(const std::string& where, std::string what, std::string hint = "") {
-  throw Error({ErrorKind::input, "E0408", where, std::move(what), "", std::move(hint)});
-}
-
 std::uint64_t product(std::uint64_t a, std::uint64_t b, const std::string& file) {
   std::uint64_t result = 0;
   // Half of the range is left for sums with offsets.
   if (__builtin_mul_overflow(a, b, &result) || result > (std::uint64_t{1} << 62U))
-    refuse_shape(file + " (field shape)", "the shape times the size of a value overflows");
+    throw input_error("E0408", file + " (field shape)")
+        .says("the shape times the size of a value overflows");
   return result;
 }
 
 std::uint64_t columns_of(const NpyHeader& header, const std::string& file) {
   const std::string where = file + " (field shape)";
   const std::size_t dimensions = header.shape.size();
-  if (dimensions == 0) refuse_shape(where, "is a single number (0-dimensional), not a log");
+  if (dimensions == 0)
+    throw input_error("E0408", where).says("is a single number (0-dimensional), not a log");
   if (dimensions > 2)
-    refuse_shape(
-        where,
-        fmt::format("has {} dimensions; 1 (samples) or 2 (rows × channels) are read", dimensions),
-        "reshape it: array.reshape(len(array), -1)");
+    throw input_error("E0408", where)
+        .says("has {} dimensions; 1 (samples) or 2 (rows × channels) are read", dimensions)
+        .hint("reshape it: array.reshape(len(array), -1)");
   if (header.structured && dimensions != 1)
-    refuse_shape(where, "a structured array must have one dimension");
+    throw input_error("E0408", where).says("a structured array must have one dimension");
   if (header.structured) return 1;
   if (dimensions == 1) return header.fields[0].count;
-  if (header.shape[1] == 0) refuse_shape(where, "has no columns");
+  if (header.shape[1] == 0) throw input_error("E0408", where).says("has no columns");
   if (header.shape[1] > kMaxColumns)
-    refuse_shape(
-        where,
-        fmt::format("has {} columns, more than the limit of {}", header.shape[1], kMaxColumns),
-        "are rows and columns exchanged? save array.T");
+    throw input_error("E0408", where)
+        .says("has {} columns, more than the limit of {}", header.shape[1], kMaxColumns)
+        .hint("are rows and columns exchanged? save array.T");
   return header.shape[1];
 }
 
@@ -59,12 +51,12 @@ void check_size(const NpyHeader& header,
   const std::uint64_t present = file_bytes - header.data_byte;
   if (present < needed) {
     const std::uint64_t item = header.item_bytes;
-    refuse_npy(fmt::format("{} (byte {})", file, file_bytes),
-               fmt::format("is truncated: {} of {} {} present",
-                           present / item,
-                           values,
-                           header.structured ? "records" : "values"),
-               "copy it again, or cut the shape to what is there");
+    throw input_error("E0410", fmt::format("{} (byte {})", file, file_bytes))
+        .says("is truncated: {} of {} {} present",
+              present / item,
+              values,
+              header.structured ? "records" : "values")
+        .hint("copy it again, or cut the shape to what is there");
   }
   if (present > needed)
     warnings.add("trailing_bytes",

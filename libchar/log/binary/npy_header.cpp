@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/log/binary/file.hpp"
 
@@ -28,7 +28,7 @@ class Literal {
                    : key == "fortran_order" ? order
                    : key == "shape"         ? shape
                                             : refuse_key(key, at);
-      if (seen) refuse("E0406", "a key stands twice in the header", key, at);
+      if (seen) throw refusal("E0406", at).says("a key stands twice in the header").got(key);
       seen = true;
       expect(':');
       if (key == "descr")
@@ -40,42 +40,29 @@ class Literal {
       if (peek() == ',')
         ++position_;
       else if (peek() != '}')
-        refuse("E0407", "expected , or } in the header", word(), position_);
+        throw refusal("E0407", position_).says("expected , or } in the header").got(word());
     }
     ++position_;
     skip_blanks();
     if (position_ != text_.size())
-      refuse("E0407", "text stands behind the header's }", word(), position_);
+      throw refusal("E0407", position_).says("text stands behind the header's }").got(word());
     if (!descr || !order || !shape)
-      refuse("E0407",
-             fmt::format("the header has no key \"{}\"",
-                         !descr   ? "descr"
-                         : !order ? "fortran_order"
-                                  : "shape"),
-             "",
-             0);
+      throw refusal("E0407", 0)
+          .says("the header has no key \"{}\"",
+                !descr   ? "descr"
+                : !order ? "fortran_order"
+                         : "shape");
   }
 
  private:
-  [[noreturn]] void refuse(const char* code,
-                           std::string what,
-                           std::string_view got,
-                           std::size_t at,
-                           std::string field = "",
-                           std::string hint = "") const {
-    const std::string name = field.empty() ? "" : ", field " + field;
-    throw Error({ErrorKind::input,
-                 code,
-                 fmt::format("{} (byte {}{})", file_, first_byte_ + at, name),
-                 std::move(what),
-                 std::string(got),
-                 std::move(hint)});
+  Refusal refusal(const char* code, std::size_t at, std::string_view field = "") const {
+    const std::string name = field.empty() ? "" : ", field " + std::string(field);
+    return input_error(code, fmt::format("{} (byte {}{})", file_, first_byte_ + at, name));
   }
   bool& refuse_key(const std::string& key, std::size_t at) const {
-    refuse("E0406",
-           "unknown key in the header; a .npy header has descr, fortran_order and shape",
-           key,
-           at);
+    throw refusal("E0406", at)
+        .says("unknown key in the header; a .npy header has descr, fortran_order and shape")
+        .got(key);
   }
 
   void skip_blanks() {
@@ -90,26 +77,26 @@ class Literal {
   std::string_view word() const { return text_.substr(std::min(position_, text_.size()), 40); }
   void expect(char c) {
     if (peek() != c)
-      refuse("E0407", fmt::format("expected {} in the header", c), word(), position_);
+      throw refusal("E0407", position_).says("expected {} in the header", c).got(word());
     ++position_;
   }
 
   std::string string() {
     const char quote = peek();
     if (quote != '\'' && quote != '"')
-      refuse("E0407", "expected a quoted string in the header", word(), position_);
+      throw refusal("E0407", position_).says("expected a quoted string in the header").got(word());
     std::string value;
     for (++position_; position_ < text_.size() && text_[position_] != quote; ++position_) {
       if (text_[position_] == '\\') {
         const char next = position_ + 1 < text_.size() ? text_[position_ + 1] : '\0';
         if (next != '\\' && next != '\'' && next != '"')
-          refuse("E0407", "unsupported escape in a name", word(), position_);
+          throw refusal("E0407", position_).says("unsupported escape in a name").got(word());
         ++position_;
       }
       value += text_[position_];
     }
     if (position_ >= text_.size())
-      refuse("E0407", "a string in the header does not end", "", position_);
+      throw refusal("E0407", position_).says("a string in the header does not end");
     ++position_;
     return value;
   }
@@ -122,19 +109,20 @@ class Literal {
         return value;
       }
     }
-    refuse("E0407", "fortran_order is neither True nor False", word(), at);
+    throw refusal("E0407", at).says("fortran_order is neither True nor False").got(word());
   }
 
   std::uint64_t number() {
     skip_blanks();
     const std::size_t at = position_;
     std::uint64_t value = 0;
-    if (peek() == '-') refuse("E0408", "a dimension is negative", word(), at);
+    if (peek() == '-') throw refusal("E0408", at).says("a dimension is negative").got(word());
     const auto [end, status] =
         std::from_chars(text_.data() + position_, text_.data() + text_.size(), value);
     if (status == std::errc::result_out_of_range)
-      refuse("E0408", "a dimension is too large", word(), at);
-    if (status != std::errc()) refuse("E0407", "expected a dimension (a whole number)", word(), at);
+      throw refusal("E0408", at).says("a dimension is too large").got(word());
+    if (status != std::errc())
+      throw refusal("E0407", at).says("expected a dimension (a whole number)").got(word());
     position_ = static_cast<std::size_t>(end - text_.data());
     if (position_ < text_.size() && text_[position_] == 'L')
       ++position_;  // Python 2 wrote long integers so
@@ -148,18 +136,19 @@ class Literal {
     std::vector<std::uint64_t> shape;
     bool comma = true;
     while (peek() != ')') {
-      if (!comma) refuse("E0407", "expected , between dimensions", word(), position_);
-      if (shape.size() == 32) refuse("E0408", "the array has more than 32 dimensions", "", at);
+      if (!comma)
+        throw refusal("E0407", position_).says("expected , between dimensions").got(word());
+      if (shape.size() == 32)
+        throw refusal("E0408", at).says("the array has more than 32 dimensions");
       shape.push_back(number());
       comma = peek() == ',';
       if (comma) ++position_;
     }
     ++position_;
     if (shape.size() == 1 && !comma)
-      refuse("E0407",
-             "the shape is not a tuple: one dimension is written (4,)",
-             text_.substr(at, position_ - at),
-             at);
+      throw refusal("E0407", at)
+          .says("the shape is not a tuple: one dimension is written (4,)")
+          .got(text_.substr(at, position_ - at));
     return shape;
   }
 
@@ -171,7 +160,7 @@ class Literal {
     const bool marked = order == '<' || order == '>' || order == '|' || order == '=';
     const std::string kind = marked ? type.substr(1) : type;
     const auto no = [&](std::string what, std::string hint) {
-      refuse("E0409", std::move(what), type, at, field, std::move(hint));
+      throw refusal("E0409", at, field).says(std::move(what)).got(type).hint(std::move(hint));
     };
     switch (kind.empty() ? '\0' : kind[0]) {
       case 'O':
@@ -222,7 +211,7 @@ class Literal {
     std::uint64_t bytes = 0;
     if (__builtin_mul_overflow(field.count, size_of(field.number.type), &bytes) ||
         field.count > kMaxColumns)
-      refuse("E0408", fmt::format("has more than {} columns", kMaxColumns), "", 0, field.name);
+      throw refusal("E0408", 0, field.name).says("has more than {} columns", kMaxColumns);
     field.byte = header.item_bytes;
     header.item_bytes += bytes;
     header.fields.push_back(std::move(field));
@@ -241,28 +230,29 @@ class Literal {
       if (peek() == ',')
         ++position_;
       else if (peek() != ']')
-        refuse("E0407", "expected , or ] in descr", word(), position_);
+        throw refusal("E0407", position_).says("expected , or ] in descr").got(word());
     }
     ++position_;
-    if (header.fields.empty()) refuse("E0409", "the record has no field that holds numbers", "", 0);
+    if (header.fields.empty())
+      throw refusal("E0409", 0).says("the record has no field that holds numbers");
   }
 
   // ('gyr', '<f8', (3,)); the last part is optional.
   void read_field(NpyHeader& header) {
     expect('(');
     if (peek() == '(')
-      refuse("E0409", "a field has a title besides its name, which is not read", word(), position_);
+      throw refusal("E0409", position_)
+          .says("a field has a title besides its name, which is not read")
+          .got(word());
     NpyField field;
     field.name = string();
     expect(',');
     const std::size_t at = (skip_blanks(), position_);
     if (peek() == '[')
-      refuse("E0409",
-             "is a record within a record, which is not read",
-             word(),
-             at,
-             field.name,
-             "save it flat, one field a channel");
+      throw refusal("E0409", at, field.name)
+          .says("is a record within a record, which is not read")
+          .got(word())
+          .hint("save it flat, one field a channel");
     const std::string type = string();
     if (peek() == ',') ++position_;
     if (peek() != ')') {
@@ -272,14 +262,15 @@ class Literal {
           peek() == '(' ? read_shape() : std::vector<std::uint64_t>{number()};
       for (const std::uint64_t extent : shape)
         if (__builtin_mul_overflow(field.count, extent, &field.count))
-          refuse("E0408", "the shape overflows", "", shape_at, field.name);
+          throw refusal("E0408", shape_at, field.name).says("the shape overflows");
     }
     expect(')');
     if (field.name.empty() && type.starts_with("|V")) return skip_padding(header, type, at);
     for (const NpyField& other : header.fields)
-      if (other.name == field.name) refuse("E0307", "two fields have one name", field.name, at);
-    if (field.name.empty()) refuse("E0409", "a field has no name", type, at);
-    if (field.count == 0) refuse("E0408", "the field holds no number", "", at, field.name);
+      if (other.name == field.name)
+        throw refusal("E0307", at).says("two fields have one name").got(field.name);
+    if (field.name.empty()) throw refusal("E0409", at).says("a field has no name").got(type);
+    if (field.count == 0) throw refusal("E0408", at, field.name).says("the field holds no number");
     field.number = number_type(type, at, field.name);
     add_field(header, std::move(field));
   }
@@ -289,7 +280,7 @@ class Literal {
     std::uint64_t bytes = 0;
     const auto [end, status] = std::from_chars(type.data() + 2, type.data() + type.size(), bytes);
     if (status != std::errc() || end != type.data() + type.size() || bytes > (1U << 20U))
-      refuse("E0409", "padding of a senseless size", type, at);
+      throw refusal("E0409", at).says("padding of a senseless size").got(type);
     header.item_bytes += bytes;
   }
 
@@ -300,18 +291,13 @@ class Literal {
 };
 
 void check_magic(std::string_view bytes, const std::string& file) {
-  const auto refuse = [&](std::string what, const char* hint) {
-    throw Error({ErrorKind::input,
-                 "E0404",
-                 file + " (byte 0)",
-                 std::move(what),
-                 std::string(bytes.substr(0, 8)),
-                 hint});
+  const auto refusal = [&] {
+    return input_error("E0404", file + " (byte 0)").got(bytes.substr(0, 8));
   };
   if (bytes.starts_with("PK\x03\x04"))
-    refuse("is a ZIP archive (.npz), not one array", "`format` npz reads it");
+    throw refusal().says("is a ZIP archive (.npz), not one array").hint("`format` npz reads it");
   constexpr std::string_view kMark = "\x93NUMPY";
-  if (!bytes.starts_with(kMark)) refuse(wrong_start(bytes, kMark, "a .npy file"), "");
+  if (!bytes.starts_with(kMark)) throw refusal().says(wrong_start(bytes, kMark, "a .npy file"));
 }
 
 }  // namespace
@@ -320,34 +306,33 @@ NpyHeader parse_npy_header(std::string_view bytes,
                            std::uint64_t file_bytes,
                            const std::string& file) {
   check_magic(bytes, file);
-  const auto refuse = [&](int byte, std::string what) {
-    throw Error(
-        {ErrorKind::input, "E0405", fmt::format("{} (byte {})", file, byte), std::move(what)});
+  const auto refusal = [&](std::size_t byte) {
+    return input_error("E0405", fmt::format("{} (byte {})", file, byte));
   };
-  if (bytes.size() < 10) refuse(static_cast<int>(bytes.size()), "ends within its header");
+  if (bytes.size() < 10) throw refusal(bytes.size()).says("ends within its header");
   const auto byte = [&](std::size_t i) {
     return static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i]));
   };
   NpyHeader header;
   header.major = static_cast<int>(byte(6));
   if (header.major < 1 || header.major > 3)
-    refuse(6, fmt::format("has version {}.{}; versions 1, 2 and 3 are read", byte(6), byte(7)));
+    throw refusal(6).says("has version {}.{}; versions 1, 2 and 3 are read", byte(6), byte(7));
   std::uint64_t length = byte(8) | byte(9) << 8U;
   std::size_t begin = 10;
   if (header.major >= 2) {
-    if (bytes.size() < 12) refuse(static_cast<int>(bytes.size()), "ends within its header");
+    if (bytes.size() < 12) throw refusal(bytes.size()).says("ends within its header");
     length |= byte(10) << 16U | byte(11) << 24U;
     begin = 12;
   }
   if (length > file_bytes - begin)
-    refuse(8, fmt::format("header length {} exceeds the file size {}", length, file_bytes));
+    throw refusal(8).says("header length {} exceeds the file size {}", length, file_bytes);
   if (length > kMaxNpyHeader)
-    refuse(8, fmt::format("header length {} exceeds the limit of {}", length, kMaxNpyHeader));
+    throw refusal(8).says("header length {} exceeds the limit of {}", length, kMaxNpyHeader);
   std::string literal(bytes.substr(begin, length));
   if (header.major < 3)
     literal = latin1_to_utf8(literal);
   else if (const std::size_t bad = first_invalid_utf8(literal); bad != std::string::npos)
-    refuse(static_cast<int>(begin + bad), "the header is not valid UTF-8");
+    throw refusal(begin + bad).says("the header is not valid UTF-8");
   Literal(literal, begin, file).read(header);
   header.data_byte = begin + length;
   return header;

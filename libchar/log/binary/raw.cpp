@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/rows.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/detail/format.hpp"
@@ -12,41 +12,36 @@
 namespace libchar {
 namespace {
 
-[[noreturn]] void refuse_raw(std::string where, std::string what, std::string hint = "") {
-  throw Error({ErrorKind::input, "E0422", std::move(where), std::move(what), "", std::move(hint)});
-}
-
 // Rows that the file holds; what does not make a whole row is counted.
 std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Findings& warnings) {
   const std::string& path = file.path();
   if (sidecar.offset > file.size())
-    refuse_raw(fmt::format("{} (byte {})", path, file.size()),
-               fmt::format("the offset of {} bytes lies behind the end of the file ({} bytes)",
-                           sidecar.offset,
-                           file.size()));
+    throw input_error("E0422", fmt::format("{} (byte {})", path, file.size()))
+        .says("the offset of {} bytes lies behind the end of the file ({} bytes)",
+              sidecar.offset,
+              file.size());
   const std::uint64_t present = file.size() - sidecar.offset;
   const std::uint64_t record = sidecar.channels.size() * size_of(sidecar.number.type);
   const std::uint64_t whole = present / record;
-  if (present == 0) throw Error({ErrorKind::input, "E0322", path, "holds no samples"});
+  if (present == 0) throw input_error("E0322", path).says("holds no samples");
   if (whole == 0)
-    refuse_raw(fmt::format("{} (byte {})", path, file.size()),
-               fmt::format("{} bytes are less than one row of {}", present, record));
+    throw input_error("E0422", fmt::format("{} (byte {})", path, file.size()))
+        .says("{} bytes are less than one row of {}", present, record);
   const std::uint64_t rows = sidecar.rows.value_or(whole);
   std::uint64_t needed = 0;
   if (__builtin_mul_overflow(rows, record, &needed) || needed > (std::uint64_t{1} << 62U))
-    refuse_raw(path, fmt::format("rows × channels × bytes overflows: {} × {}", rows, record));
+    throw input_error("E0422", path)
+        .says("rows × channels × bytes overflows: {} × {}", rows, record);
   if (rows > whole)
-    refuse_raw(fmt::format("{} (byte {})", path, file.size()),
-               fmt::format("is truncated: {} of {} rows present", whole, rows),
-               "copy it again, or correct the sidecar's rows");
+    throw input_error("E0422", fmt::format("{} (byte {})", path, file.size()))
+        .says("is truncated: {} of {} rows present", whole, rows)
+        .hint("copy it again, or correct the sidecar's rows");
   if (!sidecar.rows && sidecar.planar && present % record != 0)
-    refuse_raw(
-        path,
-        fmt::format(
-            "{} bytes are no whole number of rows of {} bytes, so the planes cannot be found",
-            present,
-            record),
-        "give rows in the sidecar");
+    throw input_error("E0422", path)
+        .says("{} bytes are no whole number of rows of {} bytes, so the planes cannot be found",
+              present,
+              record)
+        .hint("give rows in the sidecar");
   if (present > needed)
     warnings.add("trailing_bytes",
                  "bytes behind the last row were left out",
@@ -59,11 +54,11 @@ std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& 
   auto file = std::make_unique<BinaryFile>(path);
   const std::string beside = find_sidecar(path);
   if (beside.empty() && file->size() == 0)
-    refuse_raw(path, "is empty, and no sidecar stands beside it");
+    throw input_error("E0422", path).says("is empty, and no sidecar stands beside it");
   if (beside.empty())
-    refuse_raw(path,
-               "is raw binary and has no sidecar that says what it holds",
-               fmt::format("write {}.json, such as {}", path, minimal_sidecar()));
+    throw input_error("E0422", path)
+        .says("is raw binary and has no sidecar that says what it holds")
+        .hint("write {}.json, such as {}", path, minimal_sidecar());
   const Sidecar sidecar = read_sidecar(beside);
   BinaryLayout layout;
   layout.rows = count_rows(sidecar, *file, layout.warnings);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/stamps.hpp"
@@ -55,8 +55,7 @@ class BinaryRows final : public RowSource {
       row_bytes += size_of(column.number.type);
     }
     missing_per_channel_.assign(values_.size(), 0);
-    if (layout_.rows == 0)
-      throw Error({ErrorKind::input, "E0322", file_->path(), "holds no samples"});
+    if (layout_.rows == 0) throw input_error("E0322", file_->path()).says("holds no samples");
     if (time) {
       time_ = layout_.columns[*time];
       info_.time.column = time_->name;
@@ -180,12 +179,11 @@ class BinaryRows final : public RowSource {
         warnings.add("number_too_small", kNumbersTooSmall, place_of(column, next_row_ + i));
       if (!std::isinf(out[i])) continue;
       if (!overflow_as_missing_)
-        throw Error({ErrorKind::input,
-                     "E0312",
-                     fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)),
-                     "number out of range: with its scale and offset no double can hold it",
-                     shortest(stored),
-                     "`overflow_as_missing` counts it as missing"});
+        throw input_error("E0312",
+                          fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)))
+            .says("number out of range: with its scale and offset no double can hold it")
+            .got(shortest(stored))
+            .hint("`overflow_as_missing` counts it as missing");
       warnings.add("number_out_of_range", kNumbersOutOfRange, place_of(column, next_row_ + i));
       out[i] = kMissing;
     }

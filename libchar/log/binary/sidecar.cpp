@@ -10,8 +10,8 @@
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/fields.hpp"
 #include "libchar/core/document/json_reader.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/binary/npy_header.hpp"
@@ -28,18 +28,11 @@ constexpr Word kEndians[] = {{"little", 0}, {"big", 1}};
 constexpr Word kOrders[] = {{"interleaved", 0}, {"planar", 1}};
 
 // As MapReader::refuse, with the code of the kind of slip.
-[[noreturn]] void refuse_key(const MapReader& at,
-                             std::string_view key,
-                             std::string code,
-                             const std::string& what,
-                             std::string hint = "") {
+Refusal key_refusal(const MapReader& at, std::string_view key, std::string code) {
   const Document* const value = at.get(key);
-  throw Error({ErrorKind::input,
-               std::move(code),
-               at.where(value == nullptr ? at.node() : *value),
-               fmt::format("{}: {}", at.path_of(key), what),
-               value == nullptr ? "" : shown(*value),
-               std::move(hint)});
+  return input_error(std::move(code), at.where(value == nullptr ? at.node() : *value))
+      .about(at.path_of(key))
+      .got(value == nullptr ? "" : shown(*value));
 }
 
 // ---- channels ----
@@ -57,30 +50,30 @@ const Fields<SidecarChannel>& channel_rows() {
 }
 
 void check_number(const MapReader& at, std::uint64_t n) {
-  if (n == 0) refuse_key(at, "channels", "E0543", "there must be at least one channel");
+  if (n == 0) throw key_refusal(at, "channels", "E0543").says("there must be at least one channel");
   if (n > kMaxColumns)
-    refuse_key(at,
-               "channels",
-               "E0543",
-               fmt::format("{} channels, more than the limit of {}", n, kMaxColumns));
+    throw key_refusal(at, "channels", "E0543")
+        .says("{} channels, more than the limit of {}", n, kMaxColumns);
 }
 
 void read_channel(const MapReader& at, std::unordered_set<std::string>& names, Sidecar& sidecar) {
   SidecarChannel channel;
   read_fields(channel_rows(), at, channel);
   if (channel.name.empty() || channel.name.size() > kMaxName)
-    refuse_key(at, "name", "E0543", fmt::format("expected a name of 1 to {} bytes", kMaxName));
+    throw key_refusal(at, "name", "E0543").says("expected a name of 1 to {} bytes", kMaxName);
   if (!names.insert(channel.name).second)
-    refuse_key(at, "name", "E0307", "two channels have one name");
+    throw key_refusal(at, "name", "E0307").says("two channels have one name");
   if (channel.scale == 0)
-    refuse_key(at, "scale", "E0543", "a scale of 0 makes every value the same");
+    throw key_refusal(at, "scale", "E0543").says("a scale of 0 makes every value the same");
   sidecar.channels.push_back(std::move(channel));
 }
 
 void read_channels(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   const Document* const node = at.get(key);
   if (node == nullptr)
-    refuse_key(at, key, "E0542", "the key is missing", "such as " + minimal_sidecar());
+    throw key_refusal(at, key, "E0542")
+        .says("the key is missing")
+        .hint("such as " + minimal_sidecar());
   if (node->kind == Document::Kind::number && node->whole && node->number >= 0) {
     const std::uint64_t n = at.count(key);
     check_number(at, n);
@@ -89,11 +82,10 @@ void read_channels(const MapReader& at, std::string_view key, Sidecar& sidecar) 
     return;
   }
   if (node->kind != Document::Kind::list)
-    refuse_key(at,
-               key,
-               node->kind == Document::Kind::number && node->whole ? "E0543" : "E0541",
-               "expected a number of channels, or a list of {name, unit, scale, offset}");
-  if (node->list.empty()) refuse_key(at, key, "E0543", "the list is empty");
+    throw key_refusal(
+        at, key, node->kind == Document::Kind::number && node->whole ? "E0543" : "E0541")
+        .says("expected a number of channels, or a list of {name, unit, scale, offset}");
+  if (node->list.empty()) throw key_refusal(at, key, "E0543").says("the list is empty");
   check_number(at, node->list.size());
   sidecar.named = true;
   std::unordered_set<std::string> names;
@@ -124,7 +116,9 @@ void write_channels(const Field& row, const Sidecar& sidecar, std::vector<Entry>
 
 void read_type(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   if (!at.has(key))
-    refuse_key(at, key, "E0542", "the key is missing", "such as " + minimal_sidecar());
+    throw key_refusal(at, key, "E0542")
+        .says("the key is missing")
+        .hint("such as " + minimal_sidecar());
   const std::string got = at.text(key);
   const auto type = find_number_type(got);
   if (type && *type != NumberType::f16) {
@@ -136,11 +130,9 @@ void read_type(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   const std::vector<std::string> names = {
       "f64", "f32", "i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"};
   const auto near = nearest(lower, names);
-  refuse_key(at,
-             key,
-             "E0544",
-             fmt::format("expected one of {}", fmt::join(names, ", ")),
-             did_you_mean(near));
+  throw key_refusal(at, key, "E0544")
+      .says("expected one of {}", fmt::join(names, ", "))
+      .hint(did_you_mean(near));
 }
 
 void write_type(const Field& row, const Sidecar& sidecar, std::vector<Entry>& out) {
@@ -151,11 +143,9 @@ void read_offset(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   const Document* const node = at.get(key);
   if (node == nullptr) return;
   if (node->kind != Document::Kind::number || !node->whole || node->number < 0)
-    refuse_key(at,
-               key,
-               "E0541",
-               "expected the number of bytes to skip, a whole number not below 0",
-               "the offset of a channel's values stands within channels");
+    throw key_refusal(at, key, "E0541")
+        .says("expected the number of bytes to skip, a whole number not below 0")
+        .hint("the offset of a channel's values stands within channels");
   sidecar.offset = at.count(key);
 }
 
@@ -168,7 +158,7 @@ void read_start(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   if (!at.has(key)) return;
   const std::int64_t start = at.whole(key);
   if (start >= kMostNs || start <= -kMostNs)
-    refuse_key(at, key, "E0543", "expected a time within 146 years (2^62 ns) of zero");
+    throw key_refusal(at, key, "E0543").says("expected a time within 146 years (2^62 ns) of zero");
   sidecar.t0_ns = start;
 }
 
@@ -181,7 +171,9 @@ Sidecar sidecar_of(const Document& document, const std::string& file) {
   Sidecar sidecar;
   read_fields(sidecar_fields(), at, sidecar);
   if (!at.has("endian") && size_of(sidecar.number.type) > 1)
-    refuse_key(at, "endian", "E0542", "the key is missing", "little or big; a PC writes little");
+    throw key_refusal(at, "endian", "E0542")
+        .says("the key is missing")
+        .hint("little or big; a PC writes little");
   return sidecar;
 }
 
@@ -232,12 +224,10 @@ std::string find_sidecar(const std::string& log) {
     const std::string path = log + suffix;
     if (!exists(path)) continue;
     if (!found.empty())
-      throw Error({ErrorKind::input,
-                   "E0421",
-                   path,
-                   "there are two sidecars of one log",
-                   found,
-                   "keep one of them"});
+      throw input_error("E0421", path)
+          .says("there are two sidecars of one log")
+          .got(found)
+          .hint("keep one of them");
     found = path;
   }
   return found;
@@ -251,11 +241,8 @@ Sidecar read_sidecar(const std::string& path) {
   refuse_interrupted(path);
   const BinaryFile file(path);
   if (file.size() > kMaxBytes)
-    throw Error(
-        {ErrorKind::input,
-         "E0605",
-         path,
-         fmt::format("a sidecar of {} bytes exceeds the limit of {}", file.size(), kMaxBytes)});
+    throw input_error("E0605", path)
+        .says("a sidecar of {} bytes exceeds the limit of {}", file.size(), kMaxBytes);
   return parse_sidecar(file.head(kMaxBytes), path, path.ends_with(".json"));
 }
 

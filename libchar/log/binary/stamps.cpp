@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
@@ -27,12 +27,10 @@ std::optional<WholeStamps> whole_stamps(const StampFormat& format) {
 }
 
 [[noreturn]] void refuse_stamp(std::string where, double got) {
-  throw Error({ErrorKind::input,
-               "E0314",
-               std::move(where),
-               "a time stamp does not fit 64-bit nanoseconds",
-               shortest(got),
-               "is the time unit right? `time_unit` says it"});
+  throw input_error("E0314", std::move(where))
+      .says("a time stamp does not fit 64-bit nanoseconds")
+      .got(shortest(got))
+      .hint("is the time unit right? `time_unit` says it");
 }
 
 void read_whole_stamps(const std::byte* first,
@@ -60,12 +58,10 @@ void read_real_stamps(const std::byte* first,
   read_numbers(first, stride, format.number, stamps);
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (std::isnan(stamps[i]))
-      throw Error({ErrorKind::input,
-                   "E0313",
-                   where(i),
-                   "missing time stamp",
-                   "nan",
-                   "`time_column` none and `rate_hz` HZ ignore the stamps"});
+      throw input_error("E0313", where(i))
+          .says("missing time stamp")
+          .got("nan")
+          .hint("`time_column` none and `rate_hz` HZ ignore the stamps");
     const double stamp = stamps[i] * format.scale + format.offset;
     const double ns = stamp * static_cast<double>(format.unit_ns);
     if (!(std::abs(ns) < 9.2e18)) refuse_stamp(where(i), stamp);

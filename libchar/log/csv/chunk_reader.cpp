@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/csv/rows/rows.hpp"
 
 namespace libchar::csv {
@@ -17,12 +18,6 @@ namespace {
 
 /// How long a named pipe may take until its writer writes; files and other pipes are ready at once.
 constexpr int kPatience_ms = 1000;
-
-[[noreturn]] void refuse(const std::string& path,
-                         const std::string& what,
-                         const std::string& hint = "") {
-  throw Error({ErrorKind::input, "E0101", path, what, "", hint});
-}
 
 // End of the last whole line in text[from..size), 0 when there is none. A '\r' at the very end may
 // be half of "\r\n".
@@ -52,12 +47,14 @@ ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
   if (path_ == "-") {
     descriptor_ = ::dup(STDIN_FILENO);
     if (descriptor_ < 0)
-      refuse("standard input", "cannot read: " + std::string(std::strerror(errno)));
+      throw input_error("E0101", "standard input")
+          .says("cannot read: " + std::string(std::strerror(errno)));
     return;
   }
   // Without O_NONBLOCK a named pipe without a writer would hang the program here.
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor_ < 0) refuse(path_, "cannot open: " + std::string(std::strerror(errno)));
+  if (descriptor_ < 0)
+    throw input_error("E0101", path_).says("cannot open: " + std::string(std::strerror(errno)));
   // A writer that waits for us in its own open() needs a moment to begin.
   pollfd waiting{descriptor_, POLLIN, 0};
   ::poll(&waiting, 1, kPatience_ms);
@@ -69,7 +66,7 @@ ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
                                 ? "cannot be looked at: " + std::string(std::strerror(errno))
                                 : "is a folder, a file was expected";
     ::close(descriptor_);
-    refuse(path_, why);
+    throw input_error("E0101", path_).says(why);
   }
   regular_ = S_ISREG(status.st_mode);
   if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
@@ -128,8 +125,8 @@ std::size_t ChunkReader::read_file(char* to, std::size_t n) {
     const ssize_t got = ::read(descriptor_, to + done, n - done);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0)
-      refuse(path_ == "-" ? "standard input" : path_,
-             "cannot read: " + std::string(std::strerror(errno)));
+      throw input_error("E0101", path_ == "-" ? "standard input" : path_)
+          .says("cannot read: " + std::string(std::strerror(errno)));
     if (got == 0) file_ended_ = true;
     done += static_cast<std::size_t>(got);
   }

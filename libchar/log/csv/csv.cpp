@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/chunk_pipeline.hpp"
@@ -132,12 +132,9 @@ class CsvSource final : public RowSource {
     info_.format = "csv";
     const std::string_view head = chunks_.head();
     if (head.empty() && chunks_.packed())
-      throw Error({ErrorKind::input,
-                   "E0329",
-                   info_.file,
-                   "the compressed data end before their first byte of text",
-                   "",
-                   "copy the file again"});
+      throw input_error("E0329", info_.file)
+          .says("the compressed data end before their first byte of text")
+          .hint("copy the file again");
     dialect_ = understand(head, chunks_.whole(), options, info_);
     if (dialect_.group_column >= 0)
       plan_groups(options);
@@ -310,15 +307,13 @@ class CsvSource final : public RowSource {
   void refuse_many_bad_rows() const {
     constexpr std::uint64_t kFew = 10;
     if (odd_.bad.count <= kFew || odd_.bad.count * 10 <= rows_ + odd_.bad.count) return;
-    throw Error({ErrorKind::input,
-                 "E0335",
-                 fmt::format("{}:{}", info_.file, odd_.bad.spots[0].line),
-                 fmt::format("{} of {} rows cannot be read, more than one in ten",
-                             odd_.bad.count,
-                             rows_ + odd_.bad.count),
-                 "",
-                 "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say "
-                 "how the cells are written"});
+    throw input_error("E0335", fmt::format("{}:{}", info_.file, odd_.bad.spots[0].line))
+        .says("{} of {} rows cannot be read, more than one in ten",
+              odd_.bad.count,
+              rows_ + odd_.bad.count)
+        .hint(
+            "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say how "
+            "the cells are written");
   }
 
   // Every byte of the file and every cell of its rows went somewhere; anything else is a defect of

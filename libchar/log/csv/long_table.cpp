@@ -8,6 +8,7 @@
 #include <map>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/rows/stamps.hpp"
@@ -115,19 +116,15 @@ bool whole_numbers(const std::vector<std::string>& values) {
 [[noreturn]] void refuse(const std::string& name,
                          const std::vector<std::string>& values,
                          const LogInfo& info) {
-  throw Error({ErrorKind::input,
-               "E0327",
-               info.file,
-               fmt::format("the rows are of several kinds: {} is {}", name, first_names(values)),
-               "",
-               fmt::format("`where` {}={} reads one of them, `group_by` {} makes channels of each",
-                           name,
-                           values.front(),
-                           name)});
+  throw input_error("E0327", info.file)
+      .says("the rows are of several kinds: {} is {}", name, first_names(values))
+      .hint("`where` {}={} reads one of them, `group_by` {} makes channels of each",
+            name,
+            values.front(),
+            name);
 }
 
-}  // namespace
-
+/// The column that "COLUMN=VALUE" or "COLUMN" names, by name, text or position c0, c1… among all. Throws Error(usage).
 std::size_t column_named(const std::string& wanted, const Dialect& dialect, const LogInfo& info) {
   std::vector<std::string> names;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
@@ -136,13 +133,13 @@ std::size_t column_named(const std::string& wanted, const Dialect& dialect, cons
     names.push_back(column.name.empty() ? fmt::format("c{}", c) : column.name);
   }
   if (const auto position = position_in(wanted, names.size())) return *position;
-  throw Error({ErrorKind::usage,
-               "E0320",
-               info.file,
-               "there is no column of this name",
-               wanted,
-               did_you_mean(nearest(wanted, names), "it has " + first_names(names))});
+  throw usage_error("E0320", info.file)
+      .says("there is no column of this name")
+      .got(wanted)
+      .hint(did_you_mean(nearest(wanted, names), "it has " + first_names(names)));
 }
+
+}  // namespace
 
 std::vector<RowFilter> filters_of(const ReadOptions& options,
                                   const Dialect& dialect,
@@ -151,12 +148,10 @@ std::vector<RowFilter> filters_of(const ReadOptions& options,
   for (const std::string& word : options.where) {
     const std::size_t sign = word.find('=');
     if (sign == std::string::npos || sign == 0)
-      throw Error({ErrorKind::usage,
-                   "E0202",
-                   "`where`",
-                   "expected COLUMN=VALUE",
-                   word,
-                   "such as sensor=Gyroscope"});
+      throw usage_error("E0202", "`where`")
+          .says("expected COLUMN=VALUE")
+          .got(word)
+          .hint("such as sensor=Gyroscope");
     out.push_back({static_cast<int>(column_named(word.substr(0, sign), dialect, info)),
                    word.substr(sign + 1),
                    false});
@@ -173,12 +168,10 @@ void choose_groups(const std::vector<Cells>& rows,
   dialect.group_column = static_cast<int>(column);
   dialect.groups = values_of(rows, column);
   if (dialect.groups.size() > kMostKinds)
-    throw Error({ErrorKind::usage,
-                 "E0328",
-                 info.file,
-                 fmt::format("more than {} values stand in the column of `group_by`", kMostKinds),
-                 options.group_by,
-                 "a column of names of sensors was expected"});
+    throw usage_error("E0328", info.file)
+        .says("more than {} values stand in the column of `group_by`", kMostKinds)
+        .got(options.group_by)
+        .hint("a column of names of sensors was expected");
   std::size_t changes = 0;
   bool cyclic = true, together = true;
   const std::size_t n = dialect.groups.size();
@@ -191,14 +184,10 @@ void choose_groups(const std::vector<Cells>& rows,
   }
   dialect.cycles = n > 1 && cyclic && !together;
   if (n > 1 && changes < n && rows.size() > 2 * n)
-    throw Error(
-        {ErrorKind::usage,
-         "E0328",
-         info.file,
-         "the rows of one kind come behind those of another, and are not side by side: " +
-             first_names(dialect.groups),
-         "",
-         fmt::format("`where` {}={} reads one of them", options.group_by, dialect.groups[0])});
+    throw usage_error("E0328", info.file)
+        .says("the rows of one kind come behind those of another, and are not side by side: " +
+              first_names(dialect.groups))
+        .hint("`where` {}={} reads one of them", options.group_by, dialect.groups[0]);
 }
 
 void refuse_long_table(const std::vector<Cells>& rows,

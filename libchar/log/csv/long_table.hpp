@@ -6,9 +6,6 @@
 
 namespace libchar::csv {
 
-/// The column that "COLUMN=VALUE" or "COLUMN" names, by name, text or position c0, c1… among all. Throws Error(usage).
-std::size_t column_named(const std::string& wanted, const Dialect& dialect, const LogInfo& info);
-
 /// The filters of options.where. Throws Error(usage) for a column that is not there or a word without '='.
 std::vector<RowFilter> filters_of(const ReadOptions& options,
                                   const Dialect& dialect,

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/utf8.hpp"
 #include "libchar_have.hpp"
 
@@ -26,23 +26,17 @@ namespace {
 constexpr std::size_t kStoredBlock = std::size_t{1} << 17U;
 
 [[noreturn, maybe_unused]] void refuse_damage(const std::string& file, const std::string& what) {
-  throw Error({ErrorKind::input,
-               "E0329",
-               file,
-               "the compressed data are damaged: " + what,
-               "",
-               "copy the file again, or unpack what can be saved with the tool that packed it"});
+  throw input_error("E0329", file)
+      .says("the compressed data are damaged: " + what)
+      .hint("copy the file again, or unpack what can be saved with the tool that packed it");
 }
 
 [[noreturn, maybe_unused]] void refuse_without_library(const std::string& file,
                                                        const char* what,
                                                        const char* tool) {
-  throw Error({ErrorKind::input,
-               "E0330",
-               file,
-               std::string("this build cannot unpack ") + what,
-               "",
-               std::string("unpack it first: ") + tool});
+  throw input_error("E0330", file)
+      .says(std::string("this build cannot unpack ") + what)
+      .hint(std::string("unpack it first: ") + tool);
 }
 
 // What all have in common: the next stored bytes when those at hand are used up.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 
@@ -45,12 +45,10 @@ std::size_t column_of(const TableColumns& table,
   const auto column = find_column(table, wanted);
   if (column && column != table.time) return *column;
   if (table.time && (column || table.names[*table.time] == wanted))
-    throw Error({ErrorKind::usage,
-                 "E0320",
-                 file,
-                 "this is the time column, not a channel",
-                 wanted,
-                 "`time_column` none reads it as a channel"});
+    throw usage_error("E0320", file)
+        .says("this is the time column, not a channel")
+        .got(wanted)
+        .hint("`time_column` none reads it as a channel");
   std::vector<std::string> names;
   for (const std::size_t i : all_channels(table)) names.push_back(table.names[i]);
   refuse_channel(wanted, names, options, file);
@@ -105,13 +103,11 @@ void refuse_channel(const std::string& wanted,
                     const std::vector<std::string>& names,
                     const ReadOptions& options,
                     const std::string& file) {
-  throw Error(
-      {ErrorKind::usage,
-       "E0320",
-       file,
-       is_pattern(wanted) ? "no channel matches this pattern" : "there is no channel of this name",
-       wanted,
-       channel_hint(wanted, names, options)});
+  throw usage_error("E0320", file)
+      .says(is_pattern(wanted) ? "no channel matches this pattern"
+                               : "there is no channel of this name")
+      .got(wanted)
+      .hint(channel_hint(wanted, names, options));
 }
 
 std::vector<std::size_t> choose_channels(const TableColumns& table,
@@ -119,12 +115,9 @@ std::vector<std::size_t> choose_channels(const TableColumns& table,
                                          const std::string& file) {
   std::vector<std::size_t> chosen = all_channels(table);
   if (chosen.empty())
-    throw Error({ErrorKind::input,
-                 "E0310",
-                 file,
-                 "there is a time column and nothing else",
-                 "",
-                 "`time_column` none reads it as a channel"});
+    throw input_error("E0310", file)
+        .says("there is a time column and nothing else")
+        .hint("`time_column` none reads it as a channel");
   if (options.channels.empty()) return chosen;
   if (chooses(options)) chosen.clear();
   for (const std::string& word : options.channels)
@@ -137,7 +130,7 @@ std::vector<std::size_t> choose_channels(const TableColumns& table,
       for (const std::size_t i : columns_of(table, word.substr(1), options, file))
         std::erase(chosen, i);
   if (chosen.empty())
-    throw Error({ErrorKind::usage, "E0320", file, "no channel is left", options.channels.back()});
+    throw usage_error("E0320", file).says("no channel is left").got(options.channels.back());
   return chosen;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/reading_fields.hpp"
 
 namespace libchar {
@@ -42,8 +42,8 @@ constexpr ForSome kForSome[] = {
     {"skip_rows", is_text, kText},
     {"skip_repeated_header", is_text, kText}};
 
-[[noreturn]] void refuse(const std::string& option, const std::string& what) {
-  throw Error({ErrorKind::usage, "E0336", "`" + option + "`", what, "", "leave it out"});
+Refusal refusal(const std::string& option) {
+  return usage_error("E0336", "`" + option + "`").hint("leave it out");
 }
 
 }  // namespace
@@ -54,11 +54,11 @@ void refuse_unused_options(const LogFormat& format, const ReadOptions& options) 
                                    std::end(kForSome),
                                    [&](const ForSome& one) { return one.option == option; });
     if (row == std::end(kForSome) || row->takes(format)) continue;
-    refuse(option,
-           fmt::format("has an effect on {} only, and this log is {}", row->who, format.name));
+    throw refusal(option).says(
+        "has an effect on {} only, and this log is {}", row->who, format.name);
   }
   if (options.time_unit != "auto" && options.time_column == "none")
-    refuse("time_unit", "has no effect where no column holds stamps");
+    throw refusal("time_unit").says("has no effect where no column holds stamps");
 }
 
 }  // namespace libchar

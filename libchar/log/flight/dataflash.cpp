@@ -12,13 +12,13 @@
 #include <cmath>
 #include <optional>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/flight/dataflash_format.hpp"
 #include "libchar/log/flight/dataflash_listing.hpp"
-#include "libchar/log/flight/dataflash_units.hpp"
 
 namespace libchar {
 namespace {
@@ -200,28 +200,27 @@ class DataflashReader final : public TopicReader {
         log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
     Findings ignored;
     const double value = value_of(channel, body, ignored);
-    const auto refuse = [&](const char* code, const char* what) {
-      throw Error({ErrorKind::input,
-                   code,
-                   fmt::format("{} (message {} of {}, field {})",
-                               file_.path(),
-                               messages_read_,
-                               printable(log_.topics[topic_].name),
-                               printable(field.name)),
-                   what,
-                   shortest(value),
-                   "`time_column` auto takes the stamps of the messages"});
+    const auto refusal = [&](const char* code) {
+      return input_error(code,
+                         fmt::format("{} (message {} of {}, field {})",
+                                     file_.path(),
+                                     messages_read_,
+                                     printable(log_.topics[topic_].name),
+                                     printable(field.name)))
+          .got(shortest(value))
+          .hint("`time_column` auto takes the stamps of the messages");
     };
-    if (std::isnan(value)) refuse("E0313", "missing time stamp");
+    if (std::isnan(value)) throw refusal("E0313").says("missing time stamp");
     std::int64_t stamp = 0;
     if (!is_float(field.type) && field.factor == 1 && field.divisor == 1) {
       if (!read_integers(body.data() + channel.byte, 0, {field.type, false}, {&stamp, 1}) &&
           !__builtin_mul_overflow(stamp, unit_ns_, &stamp))
         return stamp;
-      refuse("E0314", "a time stamp does not fit 64-bit nanoseconds");
+      throw refusal("E0314").says("a time stamp does not fit 64-bit nanoseconds");
     }
     const double ns = value * static_cast<double>(unit_ns_);
-    if (!(std::abs(ns) < 9.2e18)) refuse("E0314", "a time stamp does not fit 64-bit nanoseconds");
+    if (!(std::abs(ns) < 9.2e18))
+      throw refusal("E0314").says("a time stamp does not fit 64-bit nanoseconds");
     return std::llround(ns);
   }
 
@@ -298,10 +297,8 @@ std::unique_ptr<TopicReader> open_dataflash(const std::string& path, const ReadO
   auto reader = std::make_unique<DataflashReader>(path, options);
   // Of a log that begins as one, what it lost says why (E0426).
   if (reader->topics().empty() && !surely_dataflash(BinaryFile(path).head(kDataflashFmtLength)))
-    throw Error({ErrorKind::input,
-                 "E0485",
-                 path,
-                 "is no DataFlash log: it defines no message, or has none of those it defines"});
+    throw input_error("E0485", path)
+        .says("is no DataFlash log: it defines no message, or has none of those it defines");
   return reader;
 }
 

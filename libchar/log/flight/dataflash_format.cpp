@@ -10,7 +10,6 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/file.hpp"
-#include "libchar/log/flight/dataflash_units.hpp"
 
 namespace libchar {
 
@@ -24,8 +23,7 @@ namespace {
 constexpr std::byte kFirstMagic{0xa3}, kSecondMagic{0x95};
 constexpr std::size_t kDataflashLookedBack = 512;  // a longest message and the front of the next
 
-}  // namespace
-
+/// Where the fill at the end of a log begins: pages of flash that were not written are 0xff or 0.
 std::uint64_t dataflash_fill(const BinaryFile& file) {
   constexpr std::size_t kStep = 65536;
   std::array<std::byte, kStep> bytes;
@@ -43,6 +41,8 @@ std::uint64_t dataflash_fill(const BinaryFile& file) {
   }
   return begin;
 }
+
+}  // namespace
 
 DataflashWalk::DataflashWalk(const BinaryFile& file,
                              std::size_t block_bytes,
@@ -385,6 +385,76 @@ void DataflashFormats::apply_units(DataflashKind& kind,
     if (by_letter != 1 && field.divisor != by_letter)
       contradictions_.push_back(kind.name + "." + field.name);
   }
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 8> kFamilies = {
+    "GYR", "ACC", "IMU", "MAG", "BARO", "BAR", "ARSP", "ISBD"};
+
+constexpr std::array<std::string_view, 13> kNoSample = {"TimeUS",
+                                                        "TimeMS",
+                                                        "SampleUS",
+                                                        "SMS",
+                                                        "Offset",
+                                                        "GndTemp",
+                                                        "GHz",
+                                                        "AHz",
+                                                        "OfsX",
+                                                        "OfsY",
+                                                        "OfsZ",
+                                                        "Primary",
+                                                        "Pri"};
+
+// "IMU2" is of the family IMU: older versions have a message for each sensor.
+std::string_view family_of(std::string_view message) {
+  const auto found = std::find_if(kFamilies.begin(), kFamilies.end(), [&](std::string_view family) {
+    if (!message.starts_with(family)) return false;
+    const std::string_view rest = message.substr(family.size());
+    return rest.empty() || (rest.size() == 1 && rest[0] >= '1' && rest[0] <= '9');
+  });
+  return found == kFamilies.end() ? std::string_view() : *found;
+}
+
+bool is_axis(std::string_view field, std::string_view front) {
+  return field.size() == front.size() + 1 && field.starts_with(front) && field.back() >= 'X' &&
+         field.back() <= 'Z';
+}
+
+}  // namespace
+
+std::string dataflash_unit(std::string_view message, std::string_view field) {
+  const std::string_view family = family_of(message);
+  if (family == "GYR" || family == "IMU" || family == "ACC") {
+    if (is_axis(field, "Gyr")) return "rad/s";
+    if (is_axis(field, "Acc")) return "m/s^2";
+    if (field == "Temp" || field == "T") return "degC";
+  }
+  if (family == "MAG" && is_axis(field, "Mag")) return "mGauss";
+  if (family == "BARO" || family == "BAR") {
+    if (field == "Press") return "Pa";
+    if (field == "Temp") return "degC";
+    if (field == "Alt") return "m";
+  }
+  return "";
+}
+
+std::string plain_unit(std::string_view label) {
+  if (label == "UNKNOWN" || label == "instance" || label == "satellites") return "";
+  if (label == "deglatitude" || label == "deglongitude" || label == "degheading") return "deg";
+  if (label == "m/s/s") return "m/s^2";
+  if (label == "rad/s/s") return "rad/s^2";
+  if (label == "deg/s/s") return "deg/s^2";
+  return std::string(label);
+}
+
+bool dataflash_sensor(std::string_view message) {
+  return !family_of(message).empty();
+}
+
+bool dataflash_no_sample(std::string_view field) {
+  return field.starts_with("MO") ||
+         std::find(kNoSample.begin(), kNoSample.end(), field) != kNoSample.end();
 }
 
 }  // namespace libchar

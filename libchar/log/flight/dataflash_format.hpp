@@ -112,9 +112,6 @@ struct DataflashMessage {
   std::span<const std::byte> body;  ///< behind its front; valid until the next message is asked for
 };
 
-/// Where the fill at the end of a log begins: pages of flash that were not written are 0xff or 0.
-std::uint64_t dataflash_fill(const BinaryFile& file);
-
 class DataflashWalk {
  public:
   /// `formats` is looked at while messages are read: lengths are added as definitions come. Damage
@@ -140,5 +137,20 @@ class DataflashWalk {
   const DataflashFormats* formats_;
   Findings* losses_;
 };
+
+// What ArduPilot's messages of sensors hold, where a log does not say it itself (FMTU came in 2018).
+// Source: ArduPilot's libraries/AP_Logger/LogStructure.h and those of its sensors.
+
+/// The unit of a field as ArduPilot writes it in all versions; "" where it is not known.
+std::string dataflash_unit(std::string_view message, std::string_view field);
+
+/// A UNIT's label as a unit: "UNKNOWN" and "instance" are none, "deglatitude" is "deg", "m/s/s" is "m/s^2".
+std::string plain_unit(std::string_view label);
+
+/// Is this a message that a sensor's driver writes ("GYR", "IMU2", "BARO")?
+bool dataflash_sensor(std::string_view message);
+
+/// Offsets, counters, health: what is no sample of a sensor.
+bool dataflash_no_sample(std::string_view field);
 
 }  // namespace libchar

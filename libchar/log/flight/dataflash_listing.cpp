@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "libchar/log/flight/dataflash_units.hpp"
+#include "libchar/log/flight/dataflash_format.hpp"
 
 namespace libchar {
 namespace {

@@ -9,12 +9,12 @@
 #include <cmath>
 #include <optional>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/flight/ulog_format.hpp"
 #include "libchar/log/flight/ulog_listing.hpp"
-#include "libchar/log/flight/ulog_units.hpp"
 
 namespace libchar {
 namespace {
@@ -243,30 +243,28 @@ class UlogReader final : public TopicReader {
 
   std::int64_t time_of_field(Data data) const {
     const UlogField& field = log_.contents[topic_].layout.fields[*time_];
-    const auto refuse = [&](const char* code, const char* what, double got) {
-      throw Error({ErrorKind::input,
-                   code,
-                   fmt::format("{} (message {} of {}, field {})",
-                               file_.path(),
-                               messages_read_,
-                               printable(log_.topics[topic_].name),
-                               printable(field.name)),
-                   what,
-                   shortest(got),
-                   "`time_column` auto takes the stamps of the messages"});
+    const auto refusal = [&](const char* code, double got) {
+      return input_error(code,
+                         fmt::format("{} (message {} of {}, field {})",
+                                     file_.path(),
+                                     messages_read_,
+                                     printable(log_.topics[topic_].name),
+                                     printable(field.name)))
+          .got(shortest(got))
+          .hint("`time_column` auto takes the stamps of the messages");
     };
     const double value = number_at(data.data() + field.byte, field.type);
     std::int64_t stamp = 0;
     if (is_float(field.type)) {
-      if (std::isnan(value)) refuse("E0313", "missing time stamp", value);
+      if (std::isnan(value)) throw refusal("E0313", value).says("missing time stamp");
       const double ns = value * static_cast<double>(unit_ns_);
       if (!(std::abs(ns) < 9.2e18))
-        refuse("E0314", "a time stamp does not fit 64-bit nanoseconds", value);
+        throw refusal("E0314", value).says("a time stamp does not fit 64-bit nanoseconds");
       return std::llround(ns);
     }
     if (read_integers(data.data() + field.byte, 0, {field.type, false}, {&stamp, 1}) ||
         __builtin_mul_overflow(stamp, unit_ns_, &stamp))
-      refuse("E0314", "a time stamp does not fit 64-bit nanoseconds", value);
+      throw refusal("E0314", value).says("a time stamp does not fit 64-bit nanoseconds");
     return stamp;
   }
 

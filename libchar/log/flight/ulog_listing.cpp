@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "libchar/log/flight/ulog_units.hpp"
+#include "libchar/log/flight/ulog_format.hpp"
 
 namespace libchar {
 namespace {

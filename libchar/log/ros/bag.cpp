@@ -12,9 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/finding.hpp"
-#include "libchar/core/text/text.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/byte_reader.hpp"
@@ -171,29 +170,28 @@ void add_chunk_info(std::string_view header, std::span<const std::byte> data, Ba
 void check_bag(MovingWindow& file) {
   const auto head =
       text_of(file.view(0, static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 13))));
-  const auto fail = [&](std::string what, const std::string& got, std::string hint) {
-    throw Error({ErrorKind::input,
-                 "E0444",
-                 file.path() + " (byte 0)",
-                 std::move(what),
-                 got,
-                 std::move(hint)});
-  };
+  const auto refusal = [&]() { return input_error("E0444", file.path() + " (byte 0)"); };
   constexpr std::string_view kMark = "#ROSBAG V2.0\n";
   const bool cut = head.size() < kMark.size() && kMark.starts_with(head);
   if (!head.starts_with(kBagMagic) || cut)
-    fail(
-        wrong_start(head, kMark, "a bag"), std::string(head), "`format` auto finds out what it is");
+    throw refusal()
+        .says(wrong_start(head, kMark, "a bag"))
+        .got(std::string(head))
+        .hint("`format` auto finds out what it is");
   if (head != kMark)
-    fail("is a bag of another version than 2.0",
-         std::string(head),
-         "rosbag fix writes it again as 2.0");
+    throw refusal()
+        .says("is a bag of another version than 2.0")
+        .got(std::string(head))
+        .hint("rosbag fix writes it again as 2.0");
   const auto record = find_record(file, kFirstBagRecord, file.size());
   if (!record) return;
   const std::string header = header_of(file, *record);
   const std::string_view encryptor = field(header, "encryptor");
   if (!encryptor.empty() && encryptor != "rosbag/NoEncryptor")
-    fail("is encrypted", std::string(encryptor), "rosbag decrypt writes it again in the clear");
+    throw refusal()
+        .says("is encrypted")
+        .got(std::string(encryptor))
+        .hint("rosbag decrypt writes it again in the clear");
 }
 
 // Nothing when there is none (a bag that was not closed), or none that can be relied on.

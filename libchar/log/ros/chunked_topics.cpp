@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/ros/decompress.hpp"
 
@@ -60,16 +60,15 @@ void ChunkScan::note_packing(const std::string& method,
   const std::string name = method.empty() ? "none" : printable(method, 40);
   if (packed_with_.find(name) == std::string::npos)
     packed_with_ += (packed_with_.empty() ? "" : ", ") + name;
-  const auto refuse = [&](const char* code, std::string what, std::string hint) {
-    const std::string place = fmt::format("{} (byte {})", file_.path(), chunk_at_);
-    throw Error({ErrorKind::input, code, place, std::move(what), "", std::move(hint)});
+  const auto refusal = [&](const char* code) {
+    return input_error(code, fmt::format("{} (byte {})", file_.path(), chunk_at_));
   };
   if (bytes > kLargestChunk)
-    refuse("E0443",
-           fmt::format("a chunk of {} bytes, more than the limit of {}", bytes, kLargestChunk),
-           fmt::format("write it again with smaller chunks ({})", rewrite));
+    throw refusal("E0443")
+        .says("a chunk of {} bytes, more than the limit of {}", bytes, kLargestChunk)
+        .hint("write it again with smaller chunks ({})", rewrite);
   if (std::string why = why_not_packed(method); !why.empty())
-    refuse("E0442", std::move(why), fmt::format("write it again without ({})", unpack));
+    throw refusal("E0442").says(std::move(why)).hint("write it again without ({})", unpack);
 }
 
 void ChunkScan::lose_chunk(Findings& warnings, const char* what, const std::string& why) {

@@ -10,7 +10,7 @@
 #include <map>
 #include <memory>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/ros/decompress.hpp"
@@ -190,7 +190,7 @@ class Db3Reader final : public MessageTopics {
       what = fmt::format("holds no table of rosbag2 (topics, messages): {}", cut->sentence);
       hint = "copy it again";
     }
-    throw Error({ErrorKind::input, "E0446", path, std::move(what), "", std::move(hint)});
+    throw input_error("E0446", path).says(std::move(what)).hint(std::move(hint));
   }
 
   // What was not yet written into the file itself.
@@ -294,12 +294,9 @@ std::unique_ptr<TopicReader> open_db3(const std::string& path, const ReadOptions
 #else
 
 std::unique_ptr<TopicReader> open_db3(const std::string& path, const ReadOptions&) {
-  throw Error({ErrorKind::input,
-               "E0447",
-               path,
-               "a database of SQLite, and this program is built without sqlite3",
-               "",
-               "ros2 bag convert writes it as MCAP"});
+  throw input_error("E0447", path)
+      .says("a database of SQLite, and this program is built without sqlite3")
+      .hint("ros2 bag convert writes it as MCAP");
 }
 
 #endif

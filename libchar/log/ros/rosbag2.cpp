@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/log_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
@@ -25,14 +25,10 @@ const Format& format_of_part(const std::string& part) {
   const Format* const format = format_by_suffix(part);
   if (format != nullptr && (format->about.name == "mcap" || format->about.name == "db3"))
     return *format;
-  throw Error({ErrorKind::input,
-               "E0449",
-               part,
-               "is a part of a recording of rosbag2 and neither .mcap nor .db3",
-               "",
-               part.ends_with(".zstd")
-                   ? "unpack it first (unzstd), and mend its name in metadata.yaml"
-                   : ""});
+  throw input_error("E0449", part)
+      .says("is a part of a recording of rosbag2 and neither .mcap nor .db3")
+      .hint(part.ends_with(".zstd") ? "unpack it first (unzstd), and mend its name in metadata.yaml"
+                                    : "");
 }
 
 // What a part is, as long as it is not read.

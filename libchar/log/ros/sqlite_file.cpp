@@ -9,7 +9,7 @@
 #include <memory>
 #include <mutex>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/file.hpp"
 
 namespace libchar {
@@ -141,7 +141,7 @@ sqlite3* open_sqlite(const std::string& path) {
   if (code == SQLITE_OK) return handle;
   const std::string why = sqlite3_errstr(code);
   sqlite3_close(handle);
-  throw Error({ErrorKind::input, "E0101", path, "cannot be opened: " + why});
+  throw input_error("E0101", path).says("cannot be opened: " + why);
 }
 
 }  // namespace libchar

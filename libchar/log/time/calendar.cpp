@@ -8,7 +8,6 @@
 #include <cctype>
 #include <chrono>
 #include <cstdlib>
-#include <string>
 
 #include "libchar/core/text/text.hpp"
 

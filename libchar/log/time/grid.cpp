@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 
@@ -48,16 +48,14 @@ TimeGrid::TimeGrid(const RowSource& source,
       [](const std::optional<double>& s, std::int64_t otherwise, const char* name) {
         if (!s) return otherwise;
         if (!std::isfinite(*s) || std::fabs(*s) > 9e9)
-          throw Error({ErrorKind::usage, "E0201", name, "is not a time in seconds", shortest(*s)});
+          throw usage_error("E0201", name).says("is not a time in seconds").got(shortest(*s));
         return static_cast<std::int64_t>(std::llround(*s * 1e9));
       };
   window_.from_ns = instant(options.from_s, 0, "`from_s`");
   window_.to_ns = instant(options.to_s, INT64_MAX, "`to_s`");
   if (window_.to_ns <= window_.from_ns)
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "`to_s`",
-                 "the window is empty: `to_s` does not lie after `from_s`"});
+    throw usage_error("E0201", "`to_s`")
+        .says("the window is empty: `to_s` does not lie after `from_s`");
 }
 
 bool TimeGrid::push(RowBlock& block) {
@@ -225,13 +223,9 @@ void TimeGrid::without_stamps(Pending& front) {
   std::size_t from = 0, to = front.block.rows;
   if (options_.from_s || options_.to_s) {
     if (!(rate > 0))
-      throw Error(
-          {ErrorKind::usage,
-           "E0205",
-           source_.info().file,
-           "`from_s` and `to_s` need a time base, and the log has neither stamps nor a rate",
-           "",
-           "`rate_hz` HZ gives it"});
+      throw usage_error("E0205", source_.info().file)
+          .says("`from_s` and `to_s` need a time base, and the log has neither stamps nor a rate")
+          .hint("`rate_hz` HZ gives it");
     const auto grid = [&](std::int64_t ns) {
       return std::ceil(static_cast<double>(ns) * 1e-9 * rate - 1e-6);
     };
@@ -288,17 +282,14 @@ void TimeGrid::judge_rate_change() {
   }
   if (asks) {
     const std::string at = shortest(std::round(at_ns * 1e-6) / 1e3);
-    throw Error(
-        {ErrorKind::input,
-         "E0334",
-         source_.info().file,
-         fmt::format("the sampling rate changes {} s after the first stamp, from {} to {} "
-                     "Hz: no grid holds both",
-                     at,
-                     brief_text(before, 5),
-                     brief_text(after, 5)),
-         "",
-         fmt::format("`to_s` {} reads what stands before it, `from_s` {} what follows", at, at)});
+    throw input_error("E0334", source_.info().file)
+        .says(
+            "the sampling rate changes {} s after the first stamp, from {} to {} Hz: no grid holds "
+            "both",
+            at,
+            brief_text(before, 5),
+            brief_text(after, 5))
+        .hint("`to_s` {} reads what stands before it, `from_s` {} what follows", at, at);
   }
   if (odd.rows > 0)
     warnings_.add("rate_change",

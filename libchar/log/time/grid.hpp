@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -16,14 +17,53 @@
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/time/clock_breaks.hpp"
-#include "libchar/log/time/grid_output.hpp"
-#include "libchar/log/time/own_rows.hpp"
 #include "libchar/log/time/recent_stamps.hpp"
 #include "libchar/log/time/stamp_model.hpp"
 #include "libchar/log/time/stamp_sketch.hpp"
 #include "libchar/log/time/time_repairs.hpp"
 
 namespace libchar {
+
+// Rows without a value of any channel that is read, in a table of slow and fast channels (a temperature
+// once a second in rows of 200 Hz): the slow channel has rows, and a clock, of its own.
+
+class OwnRows {
+ public:
+  /// Takes the next rows while nothing is decided; true once it is: by the first rows, or at the end of the log.
+  bool decide(const RowBlock& rows);
+  bool decided() const { return decided_; }
+  void decide_at_end();
+  /// The rows have a clock of their own: blank ones are to be left out.
+  bool apart() const { return apart_; }
+
+ private:
+  void judge();
+  std::vector<std::int64_t> kept_;  // stamps of rows with a value
+  std::size_t rows_ = 0, behind_blank_ = 0;
+  bool last_blank_ = false, decided_ = false, apart_ = false;
+};
+
+/// Takes the rows without a value out of the block, and says how many there were.
+std::size_t leave_out_blank_rows(RowBlock& rows);
+
+/// Samples on their way to the sink: long runs as they stand in a block, others assembled first.
+class GridOutput {
+ public:
+  explicit GridOutput(BlockSink& sink) : sink_(sink) {}
+  void begin(const LogInfo& so_far);
+  void rows(const RowBlock& block, std::size_t from, std::size_t to);
+  void missing(std::uint64_t count);
+  void flush();
+  std::uint64_t delivered() const { return delivered_; }
+
+ private:
+  void deliver(const std::vector<const double*>& channels, std::size_t rows);
+
+  BlockSink& sink_;
+  std::vector<std::vector<double>> staging_;
+  std::size_t staged_ = 0;
+  std::uint64_t delivered_ = 0;
+};
 
 inline constexpr std::int64_t kMostNs = std::int64_t{1}
                                         << 62U;  ///< of a stamp, and between two of a log

@@ -1,6 +1,6 @@
-#include "libchar/log/time/grid_output.hpp"
-
 #include <algorithm>
+
+#include "libchar/log/time/grid.hpp"
 
 namespace libchar {
 namespace {

@@ -1,9 +1,8 @@
-#include "libchar/log/time/own_rows.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/log/time/grid.hpp"
 #include "libchar/log/time/recent_stamps.hpp"
 
 namespace libchar {

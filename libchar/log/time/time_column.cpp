@@ -8,8 +8,8 @@
 #include <limits>
 #include <string>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
@@ -211,12 +211,10 @@ std::size_t named_column(const TableFront& table,
   names.reserve(columns.size());
   for (const ColumnLabel& column : columns)
     names.push_back(column.name.empty() ? fmt::format("c{}", names.size()) : column.name);
-  throw Error({ErrorKind::usage,
-               "E0320",
-               file,
-               "there is no column of this name for the time",
-               wanted,
-               channel_hint(wanted, names, options)});
+  throw usage_error("E0320", file)
+      .says("there is no column of this name for the time")
+      .got(wanted)
+      .hint(channel_hint(wanted, names, options));
 }
 
 // What the first values of a column say.

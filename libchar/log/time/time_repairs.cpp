@@ -9,8 +9,8 @@
 #include <cmath>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/log/time/grid.hpp"
@@ -102,12 +102,9 @@ void TimeGrid::fail(const Pending& front,
                     std::string code,
                     std::string what,
                     std::string hint) const {
-  throw Error({ErrorKind::input,
-               std::move(code),
-               source_.where(front.block, row, front.rows_before),
-               std::move(what),
-               "",
-               std::move(hint)});
+  throw input_error(std::move(code), source_.where(front.block, row, front.rows_before))
+      .says(std::move(what))
+      .hint(std::move(hint));
 }
 
 std::int64_t TimeGrid::checked(const Pending& front, std::size_t row, std::int64_t stamp) const {
@@ -255,23 +252,19 @@ void TimeGrid::refuse_backward() const {
                        hint);
   if (!log.topics.empty() && options_.time_source != "log")
     hint = "`time_source` log takes the time of recording, where the log has it; " + hint;
-  throw Error(
-      {ErrorKind::input,
-       "E0317",
-       backward_.place,
-       backward_.restarted()
-           ? fmt::format(
-                 "the time steps back here by {} and goes on from there: {}",
-                 how_far,
-                 log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
-                     ? "parts of a second without leading zeros, or two logs in one file"
-                     : "two logs in one file, or a device that restarted")
-           : fmt::format("the time steps back here by {}, and {} rows in no order do not "
-                         "catch up: rows of several sources, or a wild stamp before",
-                         how_far,
-                         kBackward),
-       "",
-       hint});
+  throw input_error("E0317", backward_.place)
+      .says(backward_.restarted()
+                ? fmt::format(
+                      "the time steps back here by {} and goes on from there: {}",
+                      how_far,
+                      log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
+                          ? "parts of a second without leading zeros, or two logs in one file"
+                          : "two logs in one file, or a device that restarted")
+                : fmt::format("the time steps back here by {}, and {} rows in no order do not "
+                              "catch up: rows of several sources, or a wild stamp before",
+                              how_far,
+                              kBackward))
+      .hint(hint);
 }
 
 void TimeGrid::unwrap(const Pending& front,

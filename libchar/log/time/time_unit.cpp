@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
@@ -116,12 +116,10 @@ std::int64_t unit_from_options(const std::string& word) {
     if (word == known) return unit_in_ns(word);
   if (word == "d") return kDayNs;
   if (word == "100us") return 100000;
-  throw Error({ErrorKind::usage,
-               "E0323",
-               "",
-               "unknown time unit",
-               word,
-               "use auto, s, ms, us, ns, min, h, d or 100us"});
+  throw usage_error("E0323")
+      .says("unknown time unit")
+      .got(word)
+      .hint("use auto, s, ms, us, ns, min, h, d or 100us");
 }
 
 // As the name or the file says; 0 when neither does.
@@ -154,18 +152,17 @@ std::int64_t unit_of_rate(std::int64_t guess, double step, double stated_hz, con
                                   std::int64_t{1000000},
                                   std::int64_t{1000000000}})
     if (rates_agree(rate_in(step, unit), stated_hz)) return unit;
-  throw Error({ErrorKind::input,
-               "E0325",
-               info.file,
-               fmt::format("the file states {} Hz, and its stamps step by {}, which is {} Hz in {} "
-                           "and fits in no unit",
-                           shortest(stated_hz),
-                           brief_text(step, 6),
-                           brief_text(rate_in(step, guess), 6),
-                           unit_name(guess)),
-               "",
-               "`time_unit` s|ms|us|ns believes the stamps, `time_column` none with `rate_hz` the "
-               "stated rate"});
+  throw input_error("E0325", info.file)
+      .says(
+          "the file states {} Hz, and its stamps step by {}, which is {} Hz in {} and fits in no "
+          "unit",
+          shortest(stated_hz),
+          brief_text(step, 6),
+          brief_text(rate_in(step, guess), 6),
+          unit_name(guess))
+      .hint(
+          "`time_unit` s|ms|us|ns believes the stamps, `time_column` none with `rate_hz` the "
+          "stated rate");
 }
 
 void warn_of_stated_rate(const TableFront& table, double step, std::int64_t unit, LogInfo& info) {

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/log_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
@@ -31,20 +31,13 @@ std::vector<std::string> readable_names(const std::vector<LogTopic>& topics) {
   return names;
 }
 
-[[noreturn]] void refuse(const std::string& file,
-                         std::string what,
-                         const std::string& got,
-                         std::string hint) {
-  throw Error({ErrorKind::usage, "E0425", file, std::move(what), got, std::move(hint)});
-}
-
 void refuse_unreadable(const LogTopic& topic, const std::string& file) {
   if (readable(topic)) return;
-  refuse(file,
-         topic.why_not.empty() ? "this topic holds no numbers"
-                               : fmt::format("this topic cannot be read: {}", topic.why_not),
-         topic.name,
-         "inspect lists the topics");
+  throw usage_error("E0425", file)
+      .says(topic.why_not.empty() ? "this topic holds no numbers"
+                                  : fmt::format("this topic cannot be read: {}", topic.why_not))
+      .got(topic.name)
+      .hint("inspect lists the topics");
 }
 
 // "/imu0/angular_velocity.x" and "/imu0.angular_velocity.x" are a field of /imu0; the longest topic that fits is meant.
@@ -125,14 +118,14 @@ std::size_t named_topic(const std::vector<LogTopic>& topics,
   if (found.size() == 1) return found[0];
   const std::vector<std::string> names = readable_names(topics);
   if (found.size() > 1)
-    refuse(file,
-           "several topics match this name, one is read at a time",
-           wanted,
-           fmt::format("`topic` {} chooses one", topics[found.front()].name));
-  refuse(file,
-         "there is no topic of this name",
-         wanted,
-         did_you_mean(nearest(wanted, names), "it has " + first_names(names)));
+    throw usage_error("E0425", file)
+        .says("several topics match this name, one is read at a time")
+        .got(wanted)
+        .hint("`topic` {} chooses one", topics[found.front()].name);
+  throw usage_error("E0425", file)
+      .says("there is no topic of this name")
+      .got(wanted)
+      .hint(did_you_mean(nearest(wanted, names), "it has " + first_names(names)));
 }
 
 std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
@@ -143,28 +136,28 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
     if (excludes(word)) continue;
     const std::set<std::size_t> found = topics_of(topics, word);
     if (found.empty())
-      refuse(file,
-             "no topic has a channel of this name",
-             word,
-             "inspect lists topics and their fields; `topic` chooses one");
+      throw usage_error("E0425", file)
+          .says("no topic has a channel of this name")
+          .got(word)
+          .hint("inspect lists topics and their fields; `topic` chooses one");
     if (!common) {
       common = found;
       continue;
     }
     std::erase_if(*common, [&](std::size_t t) { return found.count(t) == 0; });
     if (common->empty())
-      refuse(file,
-             "these channels are of several topics, each of which has a clock of its own",
-             fmt::format("{}", fmt::join(options.channels, ",")),
-             "read one topic at a time");
+      throw usage_error("E0425", file)
+          .says("these channels are of several topics, each of which has a clock of its own")
+          .got("{}", fmt::join(options.channels, ","))
+          .hint("read one topic at a time");
   }
   if (common->size() == 1) return *common->begin();
   std::vector<std::string> names;
   for (const std::size_t t : *common) names.push_back(topics[t].name);
-  refuse(file,
-         fmt::format("several topics have this channel: {}", first_names(names)),
-         options.channels.front(),
-         fmt::format("`topic` {} chooses one", names.front()));
+  throw usage_error("E0425", file)
+      .says("several topics have this channel: {}", first_names(names))
+      .got(options.channels.front())
+      .hint("`topic` {} chooses one", names.front());
 }
 
 // What a log lost says why nothing of it can be read.
@@ -187,7 +180,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
     what += ": " + first.sentence;
     if (!first.where.rows.empty()) what += fmt::format(" ({})", first.where.rows.front());
   }
-  throw Error({ErrorKind::input, "E0426", file, std::move(what), std::move(got), std::move(hint)});
+  throw input_error("E0426", file).says(std::move(what)).got(std::move(got)).hint(std::move(hint));
 }
 
 }  // namespace
@@ -226,14 +219,9 @@ void refuse_without_topic(const std::vector<LogTopic>& topics,
                           const Findings& losses) {
   const std::vector<std::string> names = readable_names(topics);
   if (names.empty()) refuse_unreadable_log(topics, file, losses);
-  throw Error(
-      {ErrorKind::usage,
-       "E0427",
-       file,
-       fmt::format(
-           "holds {} topics, each with a clock of its own: {}", names.size(), first_names(names)),
-       "",
-       fmt::format("`topic` {} chooses one", names.front())});
+  throw usage_error("E0427", file)
+      .says("holds {} topics, each with a clock of its own: {}", names.size(), first_names(names))
+      .hint("`topic` {} chooses one", names.front());
 }
 
 namespace {

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/csv_cell.hpp"
 #include "libchar/log/write/writers.hpp"
 
@@ -87,12 +87,9 @@ class CsvWriter final : public LogWriter {
     else if (after * 1e9L < 0x1p63L && std::abs(ns) < 0x1p63L)
       put(*start_ns_ + std::llroundl(after * 1e9L));
     else
-      throw Error({ErrorKind::output,
-                   "E0519",
-                   file_.path(),
-                   "the stamps of this log leave 64-bit nanoseconds",
-                   "",
-                   "write it as raw, or without the column of time"});
+      throw output_error("E0519", file_.path())
+          .says("the stamps of this log leave 64-bit nanoseconds")
+          .hint("write it as raw, or without the column of time");
   }
 
   void flush() {

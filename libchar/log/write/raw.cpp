@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/sidecar.hpp"
 #include "libchar/log/detail/column_name.hpp"
@@ -17,12 +17,9 @@ namespace {
 // Beside /dev/stdout there is /dev.
 const std::string& with_place_beside(const std::string& path) {
   if (writes_through(path))
-    throw Error({ErrorKind::output,
-                 "E0518",
-                 path,
-                 "raw data need a sidecar, and beside a pipe or device there is no place for it",
-                 "",
-                 "write to a file, or another format"});
+    throw output_error("E0518", path)
+        .says("raw data need a sidecar, and beside a pipe or device there is no place for it")
+        .hint("write to a file, or another format");
   return path;
 }
 
@@ -31,12 +28,9 @@ void refuse_other_sidecar(const std::string& path) {
   for (const char* suffix : {".yaml", ".yml"}) {
     struct stat status {};
     if (::stat((path + suffix).c_str(), &status) == 0)
-      throw Error({ErrorKind::output,
-                   "E0509",
-                   path + suffix,
-                   "is a sidecar of this name already",
-                   "",
-                   "remove it or choose another name"});
+      throw output_error("E0509", path + suffix)
+          .says("is a sidecar of this name already")
+          .hint("remove it or choose another name");
   }
 }
 

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "libchar/core/error.hpp"
-#include "libchar/core/file/nameless_file.hpp"
+#include "libchar/core/file/unfinished_files.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
@@ -38,21 +38,16 @@ ValueWriter::~ValueWriter() {
 }
 
 void ValueWriter::fail(const char* doing) const {
-  throw Error({ErrorKind::output,
-               "E0501",
-               file_.path(),
-               fmt::format("cannot {}: {}", doing, std::strerror(errno))});
+  throw output_error("E0501", file_.path()).says("cannot {}: {}", doing, std::strerror(errno));
 }
 
 void ValueWriter::encode(double value, std::byte* to) {
   if (number_.type == NumberType::f32 && std::isfinite(value)) {
     if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
-      throw Error({ErrorKind::output,
-                   "E0511",
-                   file_.path(),
-                   "a value does not fit 32 bits",
-                   shortest(value),
-                   "write f64"});
+      throw output_error("E0511", file_.path())
+          .says("a value does not fit 32 bits")
+          .got(shortest(value))
+          .hint("write f64");
     rounded_ += static_cast<double>(static_cast<float>(value)) != value;
   }
   write_number(value, number_, to);

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
@@ -32,12 +32,10 @@ void check_types(const std::vector<std::string>& types,
                  const std::map<std::string, NoiseLimits>& limits) {
   for (const auto& [type, file] : limits)
     if (!type.empty() && std::find(types.begin(), types.end(), type) == types.end())
-      throw Error({ErrorKind::usage,
-                   "E0751",
-                   file.file,
-                   "limits of a type that no device of the fleet is of",
-                   type,
-                   fmt::format("the types are {}", fmt::join(types, ", "))});
+      throw usage_error("E0751", file.file)
+          .says("limits of a type that no device of the fleet is of")
+          .got(type)
+          .hint("the types are {}", fmt::join(types, ", "));
 }
 
 /// How bad the news is: of several recordings the worst counts.

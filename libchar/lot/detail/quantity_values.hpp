@@ -31,13 +31,6 @@ struct MemberRecordings {
   std::vector<LotCounts> batch_counts;  ///< by batch, as `batch_of` says
 };
 
-/// `batch_of`: of each device an index below `batches`.
-MemberRecordings member_recordings(std::span<const DeviceRecord> records,
-                                   const LotGroup& group,
-                                   DeviceQuantity quantity,
-                                   const std::vector<std::size_t>& batch_of,
-                                   std::size_t batches);
-
 struct QuantityValues {
   LotCounts counts;
   std::vector<std::uint32_t> member;  ///< of the group, those that count

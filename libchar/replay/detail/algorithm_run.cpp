@@ -4,16 +4,80 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <limits>
+#include <span>
+#include <vector>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
-#include "libchar/replay/detail/tracks/timeline.hpp"
+#include "libchar/replay/error_meter.hpp"
+#include "libchar/replay/replay_result.hpp"
 
 namespace libchar {
 namespace {
+
+// Values over time, thinned for reports: no extreme is lost.
+
+inline constexpr std::size_t kTrackBins = 400;
+inline constexpr std::size_t kWindowBins = 800;
+
+bool still(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [&](double v) {
+    return v == values[0] || (std::isnan(v) && std::isnan(values[0]));
+  });
+}
+
+/// Points (time_s rising) of several series in at most `bins` bins. Empty when no series ever
+/// changes.
+Timeline thinned(std::span<const double> time_s,
+                 const std::vector<std::vector<double>>& series,
+                 std::size_t bins) {
+  Timeline out;
+  if (time_s.empty() || std::all_of(series.begin(), series.end(), still)) return out;
+  bins = std::min(bins, time_s.size());
+  out.low.resize(series.size());
+  out.high.resize(series.size());
+  for (std::size_t b = 0; b < bins; ++b) {
+    const std::size_t from = b * time_s.size() / bins, to = (b + 1) * time_s.size() / bins;
+    out.time_s.push_back(0.5 * (time_s[from] + time_s[to - 1]));
+    for (std::size_t s = 0; s < series.size(); ++s) {
+      double low = kNone, high = kNone;
+      for (std::size_t k = from; k < to; ++k) {
+        // Written so that a number beats NaN.
+        if (!(series[s][k] >= low)) low = std::isnan(series[s][k]) ? low : series[s][k];
+        if (!(series[s][k] <= high)) high = std::isnan(series[s][k]) ? high : series[s][k];
+      }
+      out.low[s].push_back(low);
+      out.high[s].push_back(high);
+    }
+  }
+  return out;
+}
+
+/// RMS of the error in a window of `window_s` centred on each instant, shorter at both ends. [RV]
+/// takes the same window and loses the ends. Computed on the meter's cells: the
+/// window is rounded to a whole number of them.
+Timeline window_rms(const ErrorMeter& meter, double rate_hz, double start_s, double window_s) {
+  const std::vector<ErrorCell> cells = meter.cells();
+  const double cell_s = static_cast<double>(meter.cell_samples()) / rate_hz;
+  const auto half =
+      static_cast<std::size_t>(std::max(0.0, std::round(window_s / cell_s / 2 - 0.5)));
+  std::vector<double> times, rms;
+  // Sums over each window of their own: a difference of running sums would keep the traces of a
+  // large error for ever.
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const std::size_t from = c > half ? c - half : 0, to = std::min(cells.size(), c + half + 1);
+    double sum = 0, n = 0;
+    for (std::size_t k = from; k < to; ++k) {
+      sum += cells[k].squares;
+      n += cells[k].n;
+    }
+    times.push_back(start_s + (static_cast<double>(c) + 0.5) * cell_s);
+    rms.push_back(n > 0 ? std::sqrt(sum / n) : kNone);
+  }
+  return thinned(times, {rms}, kWindowBins);
+}
 
 using Clock = std::chrono::steady_clock;
 

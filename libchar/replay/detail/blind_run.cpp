@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"

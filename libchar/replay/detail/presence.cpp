@@ -1,5 +1,3 @@
-#include "libchar/replay/detail/presence.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/replay/detail/scene_source.hpp"
 
 namespace libchar {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/replay/detail/align/resampled.hpp"
@@ -18,16 +18,8 @@ constexpr std::size_t kSimulatedRows = 4096, kKeptRows = 4096;
 /// Of samples of a text that is parsed once; of longer ones a pass costs a parse and no memory.
 constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
 
-[[noreturn]] void refuse(const Scene& scene,
-                         const char* code,
-                         const std::string& what,
-                         const std::string& got,
-                         const std::string& hint) {
-  throw Error({ErrorKind::input, code, scene.file, what, got, hint});
-}
-
 // What makes the numbers of a sensor worthless: marks for missing values, a dead band, a wrapping phase.
-// Of sensors that are compared (presence.hpp) one that hangs is left out anyway.
+// Of sensors that are compared (is_frozen) one that hangs is left out anyway.
 void note_bad_samples(const ChannelQuality& quality,
                       const std::string& sensor,
                       bool compared,
@@ -124,12 +116,10 @@ std::size_t column_of(const LogInfo& log,
   const std::size_t column = position(names, channel);
   if (column < names.size()) return column;
   const auto near = nearest(channel, names);
-  throw Error({ErrorKind::input,
-               "E0900",
-               scene,
-               fmt::format("the {} {} has no channel of this name", role, log.file),
-               channel,
-               did_you_mean(near, "inspect lists the channels")});
+  throw input_error("E0900", scene)
+      .says("the {} {} has no channel of this name", role, log.file)
+      .got(channel)
+      .hint(did_you_mean(near, "inspect lists the channels"));
 }
 
 Error of_scene(const Error& error, const std::string& file) {
@@ -182,11 +172,10 @@ void SceneSource::describe_simulation() {
   for (const std::string& name : wanted_) {
     columns_.push_back(position(names, name));
     if (columns_.back() == names.size())
-      refuse(*scene_,
-             "E0900",
-             "the simulation has no sensor and no truth signal of this name",
-             name,
-             "cross: names of sensors or truth signals");
+      throw input_error("E0900", scene_->file)
+          .says("the simulation has no sensor and no truth signal of this name")
+          .got(name)
+          .hint("cross: names of sensors or truth signals");
   }
   for (std::size_t k = scene_->sensors.size(); k < own_; ++k)
     info_.reference_units.push_back(
@@ -253,11 +242,9 @@ void SceneSource::scan(Progress& progress) {
         .push_back(log.channels[column].unit);
   }
   if (!(log.time.rate_hz > 0))
-    refuse(*scene_,
-           "E0901",
-           fmt::format("the recording {} states no sampling rate", scene_->recording),
-           "",
-           "recording: {file: …, rate_hz: …}");
+    throw input_error("E0901", scene_->file)
+        .says("the recording {} states no sampling rate", scene_->recording)
+        .hint("recording: {file: …, rate_hz: …}");
   info_.rate_hz = log.time.rate_hz;
   info_.samples = log.samples;
   info_.logs.push_back(std::move(log));

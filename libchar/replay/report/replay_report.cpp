@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <set>
 
 #include "libchar/characterize/compare/reported_characterization.hpp"
-#include "libchar/core/document/document_file.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json_reader.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -18,14 +17,13 @@ void check_report(const Document& document, const std::string& file) {
   const DocumentEntry* format = document.find("format");
   if (document.kind == Document::Kind::map && format != nullptr &&
       format->value.kind == Document::Kind::text && format->value.text != "replay-report")
-    throw Error({ErrorKind::input,
-                 "E0920",
-                 format->value.line > 0
-                     ? fmt::format("{}:{}:{}", file, format->value.line, format->value.column)
-                     : file,
-                 "compare reads reports of a replay (format replay-report), this is another one",
-                 format->value.text,
-                 "the report.json of a replay is one"});
+    throw input_error("E0920",
+                      format->value.line > 0
+                          ? fmt::format("{}:{}:{}", file, format->value.line, format->value.column)
+                          : file)
+        .says("compare reads reports of a replay (format replay-report), this is another one")
+        .got(format->value.text)
+        .hint("the report.json of a replay is one");
   check_format(document, file, "replay-report", 1);
 }
 
@@ -44,12 +42,9 @@ void complete(const MapReader& at, Timeline& track, const std::vector<double>& t
     for (const std::vector<double>& series : *side)
       right = right && series.size() == track.time_s.size();
   if (!right)
-    throw Error({ErrorKind::input,
-                 "E0982",
-                 at.where(at.node()),
-                 "a track has not one value for each of its times",
-                 "",
-                 "was the report edited? write it again"});
+    throw input_error("E0982", at.where(at.node()))
+        .says("a track has not one value for each of its times")
+        .hint("was the report edited? write it again");
 }
 
 void complete(const MapReader& at, ReplayReport::Stretch& stretch) {

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/fault_log.hpp"
 #include "libchar/replay/detail/tracks/thinned_tracks.hpp"
-#include "libchar/replay/view/algorithm_words.hpp"
 #include "libchar/replay/view/verdict.hpp"
+#include "libchar/replay/view/words.hpp"
 #include "libchar/scene/text/scene_writer.hpp"
 
 namespace libchar {

@@ -215,8 +215,4 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   return out;
 }
 
-std::string replay_verdict(const ReplayResult& r, bool costs) {
-  return fmt::format("{}", fmt::join(verdict_sentences(r, costs), " "));
-}
-
 }  // namespace libchar

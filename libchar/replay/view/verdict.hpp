@@ -13,8 +13,6 @@ namespace libchar {
 /// from a reference is named as such, with the best one that does not; unresolved differences are
 /// said to be so. `costs`: with what was measured, which differs from run to run.
 std::vector<std::string> verdict_sentences(const ReplayResult& result, bool costs);
-/// All of them in a row.
-std::string replay_verdict(const ReplayResult& result, bool costs = true);
 
 /// What the optimum of this scene is: "fixed weights", "tilt filters".
 std::string optimum_of(const ReplayResult& result);

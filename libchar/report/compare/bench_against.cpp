@@ -9,7 +9,7 @@
 
 #include "libchar/benchmark/bench_view.hpp"
 #include "libchar/core/document/fields.hpp"
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/table/table.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 
@@ -111,12 +111,9 @@ BenchChanges bench_changes(const BenchReport& was,
     out.figures.push_back(std::move(change));
   }
   if (out.figures.empty())
-    throw Error({ErrorKind::input,
-                 "E0968",
-                 file,
-                 "no figure of this run stands in it",
-                 "",
-                 "run the same files and parts"});
+    throw input_error("E0968", file)
+        .says("no figure of this run stands in it")
+        .hint("run the same files and parts");
   return out;
 }
 

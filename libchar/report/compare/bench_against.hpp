@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/benchmark/bench_report.hpp"
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/document/json.hpp"
 
 namespace libchar {

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/table/table.hpp"
+#include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/report/detail/escape.hpp"
+#include "libchar/core/units.hpp"
+#include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/report_rows.hpp"
 #include "libchar/report/detail/tables/scores.hpp"
@@ -146,6 +149,194 @@ std::string comparison_markdown(const Comparison& c) {
   }
   return out + "\n" + table_text(compared_table(c)) +
          "\nResolved: the 95 % intervals of the two do not overlap.\n";
+}
+
+namespace {
+
+Json summary_json(const ReportedCharacterization& s) {
+  return {{"file", json_text(s.file)},
+          {"format", s.format},
+          {"program", s.program.empty() ? Json(nullptr) : Json(json_text(s.program))},
+          {"recording", json_text(s.recording)}};
+}
+
+Json side_json(const Coefficient& c) {
+  return {{"value", json_number(c.value)},
+          {"ci95", c.value ? interval_json(c.ci95) : Json(nullptr)},
+          {"upper95", json_number(c.upper95)},
+          {"status", name_of(c.status)}};
+}
+
+Json compared_json(const ComparedTerm& t, const std::string& unit) {
+  const auto key = kTermNames[static_cast<std::size_t>(t.term)].key;
+  return {{"term", key},
+          {"unit", json_text(term_unit(key, unit))},
+          {"a", side_json(t.a)},
+          {"b", side_json(t.b)},
+          {"ratio", json_number(t.ratio)},
+          {"ratio_ci95", t.ratio ? interval_json(t.ratio_ci95) : Json(nullptr)},
+          {"p", json_number(t.p)},
+          {"difference", name_of(t.difference)},
+          {"sentence", json_text(t.sentence)}};
+}
+
+std::string where_is(const ComparedChannel& c) {
+  return c.in_a ? c.in_b ? "" : "only in A" : "only in B";
+}
+
+Table compared_table(const CharacterizationComparison& comparison) {
+  Table out("channel|term|A|B|unit|");
+  for (const ComparedChannel& c : comparison.channels) {
+    if (!where_is(c).empty()) out.add({c.name, "", "", "", "", where_is(c)});
+    for (const ComparedTerm& t : c.terms) {
+      const auto key = kTermNames[static_cast<std::size_t>(t.term)].key;
+      out.add({c.name,
+               key,
+               coefficient_text(t.a),
+               coefficient_text(t.b),
+               term_unit(key, c.unit),
+               t.sentence});
+    }
+    for (const std::string& remark : c.remarks) out.add({c.name, "", "", "", "", remark});
+  }
+  return out;
+}
+
+}  // namespace
+
+Json comparison_json(const CharacterizationComparison& comparison) {
+  Json out = {{"a", summary_json(comparison.a)},
+              {"b", summary_json(comparison.b)},
+              {"verdict", json_text(comparison.verdict)}};
+  out["channels"] = Json::array();
+  for (const ComparedChannel& c : comparison.channels) {
+    Json channel = {{"name", json_text(c.name)},
+                    {"unit", json_text(c.unit)},
+                    {"in_a", c.in_a},
+                    {"in_b", c.in_b}};
+    channel["terms"] =
+        list_json(c.terms, [&](const ComparedTerm& t) { return compared_json(t, c.unit); });
+    channel["remarks"] = texts_json(c.remarks);
+    out["channels"].push_back(std::move(channel));
+  }
+  return out;
+}
+
+std::string comparison_text(const CharacterizationComparison& comparison, std::size_t width) {
+  std::string out = fmt::format("A: {} ({})\nB: {} ({})\n",
+                                printable(comparison.a.file),
+                                printable(comparison.a.recording),
+                                printable(comparison.b.file),
+                                printable(comparison.b.recording));
+  return out + "\n" + terminal_table(compared_table(comparison), {width}, "") + "\n" +
+         printable(comparison.verdict) + "\n";
+}
+
+std::string comparison_markdown(const CharacterizationComparison& comparison) {
+  return "# Two characterizations\n\n" + markdown_text(comparison.verdict) +
+         "\n\n- A: " + markdown_text(comparison.a.file) +
+         "\n- B: " + markdown_text(comparison.b.file) + "\n\n" +
+         table_text(compared_table(comparison));
+}
+
+namespace {
+
+Json side_json(const LotCounts& counts, const LotFigures& f) {
+  return {{"members", counts.members},
+          {"counted", counts.counted},
+          {"mean", json_number(f.mean)},
+          {"mean_ci95", interval_json(f.mean_ci95)},
+          {"spread", json_number(f.spread)},
+          {"spread_ci95", interval_json(f.spread_ci95)}};
+}
+
+Json difference_json(const LotDifference& d) {
+  return {{"type", json_text(d.type)},
+          {"channel", json_text(d.group)},
+          {"what", std::string(name_of(d.quantity))},
+          {"unit", json_text(d.unit)},
+          {"a", side_json(d.counts_a, d.a)},
+          {"b", side_json(d.counts_b, d.b)},
+          {"change_is", in_logarithm(d.quantity) ? "ratio" : "difference"},
+          {"change", json_number(d.change)},
+          {"change_ci95", interval_json(d.change_ci95)},
+          {"p_mean", json_number(d.p_mean)},
+          {"p_mean_of_all", json_number(d.p_mean_of_all)},
+          {"p_spread", json_number(d.p_spread)},
+          {"p_spread_of_all", json_number(d.p_spread_of_all)},
+          {"mean_differs", d.mean_differs},
+          {"spread_differs", d.spread_differs},
+          {"sentence", json_text(d.sentence)}};
+}
+
+std::string changed(const LotDifference& d) {
+  const bool logarithm = in_logarithm(d.quantity);
+  const auto shown = [&](double value) {
+    return number_text(logarithm ? 100 * (value - 1) : value, 3);
+  };
+  return fmt::format("{} [{}, {}]{}",
+                     shown(d.change),
+                     shown(d.change_ci95.low),
+                     shown(d.change_ci95.high),
+                     logarithm ? " %" : " " + d.unit);
+}
+
+Table differences_table(const FleetComparison& c) {
+  Table out("channel|what|mean of |mean of |change|counted|differs");
+  out.columns[2].head += c.name_a;
+  out.columns[3].head += c.name_b;
+  for (const LotDifference& d : c.differences)
+    out.add({d.type.empty() ? d.group : d.group + " of " + d.type,
+             title_of(d.quantity),
+             number_text(d.a.mean) + " " + d.unit,
+             number_text(d.b.mean) + " " + d.unit,
+             changed(d),
+             fmt::format("{} and {}", d.counts_a.counted, d.counts_b.counted),
+             d.mean_differs && d.spread_differs ? "mean and spread"
+             : d.mean_differs                   ? "mean"
+             : d.spread_differs                 ? "spread"
+                                                : ""});
+  return out;
+}
+
+/// Why a change whose interval leaves zero out need not differ.
+std::string corrected_note(const FleetComparison& c) {
+  return fmt::format(
+      "In brackets the 95 % interval of that change alone. Of {} some leave out zero by chance: "
+      "what differs is told by all of them together (Holm).",
+      plural(c.tests, "test"));
+}
+
+}  // namespace
+
+Json fleet_comparison_json(const FleetComparison& c,
+                           const std::vector<std::string>& command,
+                           const std::vector<LogInfo>& inputs) {
+  std::vector<const LogInfo*> files;
+  files.reserve(inputs.size());
+  for (const LogInfo& one : inputs) files.push_back(&one);
+  Json out = document_head("fleet-comparison", command, files);
+  out["a"] = {{"name", json_text(c.name_a)}, {"devices", c.devices_a}};
+  out["b"] = {{"name", json_text(c.name_b)}, {"devices", c.devices_b}};
+  out["verdict"] = json_text(c.verdict);
+  out["tests"] = c.tests;
+  out["false_alarm"] = c.false_alarm;
+  out["differences"] = list_json(c.differences, difference_json);
+  out["not_compared"] = texts_json(c.not_compared);
+  out["notes"] = texts_json(c.notes);
+  return out;
+}
+
+std::string fleet_comparison_text(const FleetComparison& c, std::size_t width) {
+  std::string out = printable(c.verdict) + "\n";
+  for (const LotDifference& d : c.differences)
+    if (d.mean_differs || d.spread_differs) out += "  " + printable(d.sentence) + "\n";
+  if (!c.differences.empty())
+    out += "\n" + terminal_table(differences_table(c), {width}) + "  " + corrected_note(c) + "\n";
+  if (!c.not_compared.empty() || !c.notes.empty()) out += "\n";
+  for (const std::string& sentence : c.notes) out += "  " + printable(sentence) + "\n";
+  for (const std::string& sentence : c.not_compared) out += "  " + printable(sentence) + "\n";
+  return out;
 }
 
 }  // namespace libchar

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/report/detail/escape.hpp"
-
 namespace libchar {
 Json texts_json(const std::vector<std::string>& texts) {
   Json out = Json::array();

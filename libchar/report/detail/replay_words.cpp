@@ -8,7 +8,7 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/replay/view/preparation_words.hpp"
+#include "libchar/replay/view/words.hpp"
 
 namespace libchar {
 

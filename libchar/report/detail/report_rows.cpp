@@ -2,7 +2,6 @@
 
 #include "libchar/characterize/curves/curve_document.hpp"
 #include "libchar/core/document/coefficient_fields.hpp"
-#include "libchar/core/document/finding_fields.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {

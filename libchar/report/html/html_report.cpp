@@ -10,23 +10,275 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
+#include "libchar/characterize/characterization_view.hpp"
+#include "libchar/characterize/compare/verification.hpp"
+#include "libchar/characterize/verdict.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html/html_channel.hpp"
 #include "libchar/report/detail/html/html_page.hpp"
 #include "libchar/report/detail/html/html_plots.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/html/limits_pieces.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/html/pieces.hpp"
 #include "libchar/report/detail/tables/coefficients.hpp"
 #include "libchar/report/json/json_report.hpp"
 
 namespace libchar {
 namespace {
+
+// One channel's section of the page. Every text that reaches the page goes through escape.hpp.
+
+struct ChannelLayout {
+  bool open = false;   ///< not folded
+  bool trace = false;  ///< the record in time stands here, and not above
+};
+
+std::string agreement_chip(bool agrees) {
+  return agrees ? html_chip("agrees", Tint::good) : html_chip("disagrees", Tint::bad);
+}
+
+/// What follows from the coefficients: name, number, what it is.
+void add_derived_rows(Table& table, const ChannelView& view, double rate_hz) {
+  const ChannelResult& c = *view.result;
+  const auto add = [&](const char* name, Cell value, const std::string& unit, std::string what) {
+    value.unit = unit;
+    table.add({name, std::move(value), "", "", std::move(what)}, Table::Kind::derived);
+  };
+  const Coefficient& white = (*c.fit)[Term::white];
+  if (white.value)
+    add("Noise of a single sample",
+        value_text(white, std::sqrt(rate_hz)),
+        view.shown_unit,
+        fmt::format("N·√f: what white noise alone gives at f = {} Hz; the samples of this "
+                    "recording have a standard deviation of {} {}",
+                    brief_text(rate_hz, 6),
+                    number_text(c.quality.standard_deviation, 4),
+                    view.shown_unit));
+  if (const AllanPoint* lowest = view.allan_minimum)
+    add("Minimum of the Allan curve",
+        Cell::number(lowest->deviation),
+        view.shown_unit,
+        fmt::format("at τ = {}: the best an average over a constant time can do; it is not B",
+                    duration_text(lowest->tau_s)));
+  if (c.fit->bandwidth_hz) {
+    const double corner = *c.fit->bandwidth_hz;
+    const auto& ci = c.fit->bandwidth_ci95;
+    add("Bandwidth",
+        ci ? Cell::number(corner, *ci, digits_of(corner, *ci)) : Cell::number(corner),
+        "Hz",
+        "corner of the first-order low-pass that the fit needed");
+  }
+}
+
+std::string numbers_table(const ChannelView& view, double rate_hz) {
+  const NoiseFit& fit = *view.result->fit;
+  Table out = coefficients_table(fit, view.unit);
+  out.title = "Noise coefficients";
+  add_derived_rows(out, view, rate_hz);
+  std::string html = html_table(out, {.css = "numbers cards", .cards = true});
+  if (const Table laws = power_laws_table(fit); !laws.rows.empty()) html += html_table(laws);
+  html +=
+      "<p class=\"note\">Letters are those of IEEE 952. N and K are roots of two-sided densities; "
+      "a data sheet's noise density is one-sided, √2·N. <i>Best possible</i> is the Cramér–Rao "
+      "bound for this record length";
+  if (!fit.band.whole) html += ", were its whole spectrum described by the noise terms";
+  return html + ".</p>\n";
+}
+
+std::string unit_of(Term term, const ChannelView& view) {
+  return shown_term_unit(kTermNames[static_cast<std::size_t>(term)].key, view.unit);
+}
+
+std::string second_opinion_table(const ChannelView& view) {
+  const NoiseFit& fit = *view.result->fit;
+  Table out("term|spectral fit|Allan fit|± sd|unit|apart by");
+  for (const OtherOpinion& other : view.other_opinions)
+    out.add({term_title(other.term, view.unit),
+             value_text(fit[other.term]),
+             Cell::number(other.value),
+             Cell::number(other.sd, 2),
+             unit_of(other.term, view),
+             other.apart ? number_text(*other.apart, 2) + " sd" : "–"});
+  // The badge above says that much already.
+  const std::string& sentence = fit.second_opinion->sentence;
+  return html_table(out) +
+         (fit.second_opinion->agrees ? "" : "<p>" + html_text(sentence) + "</p>\n");
+}
+
+std::string trust(const ChannelView& view, std::size_t index) {
+  const ChannelResult& c = *view.result;
+  const NoiseFit& fit = *c.fit;
+  std::string out = "<div class=\"two-columns\">\n<div>\n";
+  if (!fit.residuals.empty()) {
+    out += plot_figure(
+        "residuals",
+        index,
+        {"Residuals of the fit",
+         "residual",
+         "sd",
+         "Each point: measured against model in one bin, as a standard normal deviate. "
+         "They should scatter evenly, 95 % within "
+         "the grey band; triangles on the edge lie beyond it. Bins outside the fitted band are not "
+         "shown."},
+        c.channel.name);
+  }
+  out += "</div>\n<div>\n<p>" + html_text(view.goodness) + "</p>\n";
+  out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " +
+         std::to_string(fit.iterations) +
+         (fit.converged ? " iterations, converged.</p>\n"
+                        : " iterations, <b>not converged</b>.</p>\n");
+  if (!fit.remedies.empty()) {
+    Table remedies("remedy|because|what was done|count");
+    remedies.title = "What was done to the data before the fit";
+    for (const Remedy& r : fit.remedies)
+      remedies.add({r.kind, r.alarm, r.action, count_text(r.count)});
+    out += html_table(remedies);
+  }
+  if (fit.second_opinion)
+    out += "<h3>Second opinion: fit of the Allan curve " +
+           agreement_chip(fit.second_opinion->agrees) + "</h3>\n" + second_opinion_table(view);
+  return out + "</div>\n</div>\n";
+}
+
+std::string trust_summary(const NoiseFit& fit) {
+  std::string out = "Can it be trusted? <span class=\"dim\">goodness of fit " +
+                    html_text(probability_text(fit.goodness.p));
+  if (fit.second_opinion)
+    out += fit.second_opinion->agrees ? "; the Allan fit agrees" : "; the Allan fit disagrees";
+  return out + "</span>";
+}
+
+std::string verification_section(const ChannelView& view) {
+  const ChannelVerification& v = *view.result->verification;
+  Table out("term|model|fit of the simulated record|unit|");
+  for (const TermVerification& t : v.terms)
+    out.add({term_title(t.term, view.unit),
+             value_text(t.model),
+             coefficient_text(t.simulated),
+             unit_of(t.term, view),
+             t.agrees ? Cell::word("agrees", Tint::good) : Cell::word("disagrees", Tint::bad)});
+  return folded("Simulated from the model " + agreement_chip(v.agrees),
+                bullet_list(v.sentences, "plain") + html_table(out));
+}
+
+std::string lines_table(const ChannelView& view) {
+  const ChannelResult& c = *view.result;
+  if (c.lines.empty()) return "";
+  Table out("frequency|amplitude (peak)|above the floor|width");
+  out.title = "Spectral lines";
+  for (const SpectralLine& line : c.lines)
+    out.add({number_text(line.frequency_hz, 5) + " Hz",
+             number_text(line.amplitude, 3) + " " + view.unit,
+             "×" + number_text(line.excess, 3),
+             number_text(line.width_hz, 2) + " Hz"});
+  return html_table(out);
+}
+
+/// What the samples say: name and value.
+Table quality_table(const ChannelView& view) {
+  const ChannelQuality& q = view.result->quality;
+  const std::string unit = " " + view.shown_unit;
+  const double missing =
+      static_cast<double>(q.missing) / static_cast<double>(q.samples + q.missing);
+  const bool constant = q.samples > 0 && q.minimum == q.maximum;
+  Table out("|");
+  out.add({"Samples", count_text(q.samples)});
+  out.add({"Missing",
+           q.missing == 0 ? "none"
+                          : fmt::format("{} ({})", count_text(q.missing), percent_text(missing))});
+  out.add({"Mean", number_text(q.mean, 6) + unit});
+  out.add(
+      {"Standard deviation", constant ? "constant" : number_text(q.standard_deviation, 4) + unit});
+  if (q.samples > 0)
+    out.add({"Range", number_text(q.minimum, 5) + " … " + number_text(q.maximum, 5) + unit});
+  out.add({"Resolution (LSB)",
+           q.resolution ? number_text(*q.resolution, 4) + unit : "no grid of values found"});
+  out.add({"Distinct values",
+           q.distinct_values >= 4096 ? "4096 or more" : count_text(q.distinct_values)});
+  out.add({"Saturated samples", q.saturated == 0 ? "none" : count_text(q.saturated)});
+  out.add({"Longest run of one value", plural(q.longest_stuck, "sample")});
+  if (!constant)
+    out.add({"Kurtosis of differences",
+             number_text(q.difference_kurtosis, 3) + " (3 is Gaussian, more means spikes)"});
+  if (q.float32 && !constant)
+    out.add(
+        {"Number format", "32-bit floats, in steps of " + number_text(q.float32_step, 2) + unit});
+  return out;
+}
+
+std::string consumers(const ChannelView& view, double rate_hz) {
+  if (view.consumers.empty()) return "";
+  Table out("for|name there|formula|value|unit");
+  out.note = "f = " + brief_text(rate_hz, 6) +
+             " Hz. ≤ stands before an upper 95 % limit of a term that was not detected.";
+  const std::string* before = nullptr;
+  for (const ConsumerNumber& row : view.consumers) {
+    const bool repeated = before != nullptr && *before == row.consumer;
+    out.add({repeated ? "" : row.consumer, row.key, row.formula, row.value, row.unit});
+    before = &row.consumer;
+  }
+  return folded("Which number goes where", html_table(out));
+}
+
+std::string curve_points(const ChannelView& view) {
+  const ChannelResult& c = *view.result;
+  if (c.allan.points.empty()) return "";
+  const std::string& unit = view.shown_unit;
+  Table out("τ, s|deviation|68 % interval|95 % interval|degrees of freedom|terms|");
+  if (!unit.empty()) out.columns[1].head += ", " + unit;
+  constexpr std::size_t kMostRows = 200;
+  const std::size_t stride = (c.allan.points.size() + kMostRows - 1) / kMostRows;
+  if (stride > 1)
+    out.note =
+        fmt::format("Every {}th point; all of them are in curves.csv and report.json.", stride);
+  for (std::size_t i = 0; i < c.allan.points.size(); i += stride) {
+    const AllanPoint& p = c.allan.points[i];
+    const bool known = p.edf > 0;
+    out.add({number_text(p.tau_s, 6),
+             number_text(p.deviation, 5),
+             known ? interval_text(p.ci68) : "–",
+             known ? interval_text(p.ci95) : "–",
+             known ? number_text(p.edf, 4) : "–",
+             count_text(p.terms),
+             p.reliable ? "" : "unreliable"});
+  }
+  return folded(
+      fmt::format("Points of the {} curve ({})", name_of(c.allan.type), c.allan.points.size()),
+      html_table(out, {.css = "points"}) + bullet_list(c.allan.notes, "plain") +
+          bullet_list(c.spectrum.notes, "plain"));
+}
+
+/// What can be unfolded of one channel: plots, numbers, trust, data quality, units for consumers, points of the curve.
+std::string channel_section(const ChannelView& view,
+                            const LogInfo& log,
+                            std::size_t index,
+                            const ChannelLayout& layout) {
+  const ChannelResult& c = *view.result;
+  const double rate_hz = log.rate_hz_of(c.channel);
+  std::string out = fmt::format(
+      "<details class=\"channel\" id=\"channel-{}\"{}><summary>{} <b>{}</b>{}</summary>\n",
+      index,
+      layout.open ? " open" : "",
+      rating_badge(view.judgement.rating),
+      html_text(c.channel.name),
+      view.unit.empty() ? " <span class=\"unit\">unit not stated, written U</span>"
+                        : " <span class=\"unit\">" + html_text(view.shown_unit) + "</span>");
+  out += "<p class=\"sentence\">" + html_text(view.summary) + "</p>\n";
+  out += findings_list(view.judgement.findings) + bullet_list(view.beside_terms, "plain");
+  if (layout.trace) out += trace_plot(view, index, log);
+  out += curve_plots(view, index);
+  if (c.fit)
+    out += numbers_table(view, rate_hz) + folded(trust_summary(*c.fit), trust(view, index));
+  if (c.verification) out += verification_section(view);
+  out += folded("Data quality",
+                html_table(quality_table(view), {.css = "facts"}) + lines_table(view) +
+                    findings_list(c.quality.findings));
+  return out + consumers(view, rate_hz) + curve_points(view) + "</details>\n";
+}
 
 std::string facts(const CharacterizationView& view) {
   const Characterization& result = *view.result;

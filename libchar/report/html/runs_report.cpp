@@ -19,8 +19,7 @@
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_page.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/html/limits_pieces.hpp"
-#include "libchar/report/detail/html/many_pieces.hpp"
+#include "libchar/report/detail/html/pieces.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/report_rows.hpp"
 #include "libchar/report/text/fit_text.hpp"
@@ -79,16 +78,15 @@ Json consistency_json(const PooledChannel& c) {
               {"p", json_number(c.p)},
               {"simulations", c.simulations}};
   out["turn_on_bias"] = c.bias ? effects_json(*c.bias) : Json(nullptr);
-  out["runs"] = Json::array();
-  for (const ChannelRun& run : c.runs)
-    out["runs"].push_back({{"run", run.run},
-                           {"mean", json_number(run.mean)},
-                           {"mean_sd", json_number(run.mean_sd)},
-                           {"likelihood_ratio", json_number(run.ratio)},
-                           {"p", json_number(run.p)},
-                           {"differs", run.differs}});
-  out["sentences"] = Json::array();
-  for (const std::string& sentence : c.sentences) out["sentences"].push_back(json_text(sentence));
+  out["runs"] = list_json(c.runs, [&](const ChannelRun& run) {
+    return Json({{"run", run.run},
+                 {"mean", json_number(run.mean)},
+                 {"mean_sd", json_number(run.mean_sd)},
+                 {"likelihood_ratio", json_number(run.ratio)},
+                 {"p", json_number(run.p)},
+                 {"differs", run.differs}});
+  });
+  out["sentences"] = texts_json(c.sentences);
   return out;
 }
 
@@ -173,16 +171,15 @@ Json runs_json(const RunsReport& report) {
   Json out = many_head("pooled-runs", report.runs, report.command);
   out["verdict"] = json_text(report.pooled->verdict);
   out["runs"] = run_links_json(report);
-  Json fits = Json::array(), channels = Json::array(), problems = Json::array();
+  Json fits = Json::array(), channels = Json::array();
   for (const PooledChannel& c : report.pooled->channels) {
     fits.push_back(
         noise_fit_json(json_text(c.channel.name), json_text(c.channel.unit), c.fit, true));
     channels.push_back(consistency_json(c));
   }
-  for (const std::string& problem : report.pooled->problems) problems.push_back(json_text(problem));
   out["fit"] = noise_fit_document(std::move(fits));
   out["consistency"] = {{"channels", std::move(channels)}};
-  out["problems"] = std::move(problems);
+  out["problems"] = texts_json(report.pooled->problems);
   if (report.limits != nullptr) out["limits"] = document_of(limit_report_fields(), *report.limits);
   return out;
 }

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/log/recording_json.hpp"
-#include "libchar/report/detail/html/many_pieces.hpp"
+#include "libchar/report/detail/html/pieces.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 
@@ -231,8 +231,8 @@ Json fleet_json(const FleetReport& report) {
     one["reasons"] = texts_json(w.reasons);
     out["worst"].push_back(std::move(one));
   }
-  out["quantities"] = Json::array();
-  for (const QuantityLot& q : lot.quantities) out["quantities"].push_back(quantity_json(report, q));
+  out["quantities"] =
+      list_json(lot.quantities, [&](const QuantityLot& q) { return quantity_json(report, q); });
   return out;
 }
 

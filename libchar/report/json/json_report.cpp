@@ -14,7 +14,6 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/recording_json.hpp"
-#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/report_rows.hpp"
 
 namespace libchar {

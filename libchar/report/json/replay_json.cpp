@@ -10,7 +10,7 @@
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/fusion/registry.hpp"
-#include "libchar/replay/view/algorithm_words.hpp"
+#include "libchar/replay/view/words.hpp"
 #include "libchar/report/detail/report_rows.hpp"
 
 namespace libchar {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/report/detail/tables/coefficients.hpp"
@@ -27,19 +27,13 @@ std::vector<const ReportedChannel*> chosen_channels(const ReportedCharacterizati
   for (const std::string& pattern : patterns)
     if (std::none_of(
             names.begin(), names.end(), [&](const auto& name) { return matches(pattern, name); }))
-      throw Error({ErrorKind::usage,
-                   "E0985",
-                   report.file,
-                   "no channel of the report has this name",
-                   pattern,
-                   did_you_mean(nearest(pattern, names), "there are " + first_names(names))});
+      throw usage_error("E0985", report.file)
+          .says("no channel of the report has this name")
+          .got(pattern)
+          .hint(did_you_mean(nearest(pattern, names), "there are " + first_names(names)));
   if (out.empty())
-    throw Error({ErrorKind::input,
-                 "E0985",
-                 report.file,
-                 "no channel of the report was fitted: there is no coefficient for a table",
-                 "",
-                 ""});
+    throw input_error("E0985", report.file)
+        .says("no channel of the report was fitted: there is no coefficient for a table");
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libchar/core/document/schema.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_paths.hpp"
 
@@ -13,20 +14,14 @@ namespace libchar {
 
 // ---- refusals ----
 
-/// Throws Error(input): "WHERE: error CODE: KEY: WHAT".
-[[noreturn]] void refuse_scene(const char* code,
-                               const MapReader& at,
-                               std::string_view key,
-                               const std::string& what,
-                               const std::string& hint = "");
+/// "WHERE: error CODE: KEY: …"
+Refusal scene_refusal(const char* code, const MapReader& at, std::string_view key);
 
 /// The same about a value that stands in a list.
-[[noreturn]] void refuse_scene_value(const char* code,
-                                     const MapReader& at,
-                                     const Document& node,
-                                     const std::string& path,
-                                     const std::string& what,
-                                     const std::string& hint = "");
+Refusal scene_refusal_at(const char* code,
+                         const MapReader& at,
+                         const Document& node,
+                         const std::string& path);
 
 /// A scalar: a name, a path, a number.
 bool is_scalar(const Document& node);

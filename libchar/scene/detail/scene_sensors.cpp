@@ -12,7 +12,7 @@
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/channel_names.hpp"
-#include "libchar/model/model_reader.hpp"
+#include "libchar/model/model_file.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
 
@@ -58,7 +58,8 @@ class SensorsReader {
 
   SensorIndex read() {
     const auto& list = top_.list("sensors");
-    if (list.empty()) refuse_scene("E0736", top_, "sensors", "expected at least one sensor");
+    if (list.empty())
+      throw scene_refusal("E0736", top_, "sensors").says("expected at least one sensor");
     if (list.size() > kMostSensors) refuse_number(list.size());
     match_patterns(list);
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -73,19 +74,13 @@ class SensorsReader {
  private:
   using Place = SensorIndex::Place;
 
-  [[noreturn]] void refuse(const char* code,
-                           const Place& place,
-                           const std::string& what,
-                           const std::string& hint = "") const {
-    refuse_scene_value(code, top_, *place.node, place.path, what, hint);
+  Refusal refusal(const char* code, const Place& place) const {
+    return scene_refusal_at(code, top_, *place.node, place.path);
   }
 
   [[noreturn]] void refuse_number(std::uint64_t number) const {
-    refuse_scene(
-        "E0736",
-        top_,
-        "sensors",
-        fmt::format("{} sensors are more than the {} that a scene may have", number, kMostSensors));
+    throw scene_refusal("E0736", top_, "sensors")
+        .says("{} sensors are more than the {} that a scene may have", number, kMostSensors);
   }
 
   // Of a recording, and where there is none, the recording is not looked at.
@@ -104,12 +99,9 @@ class SensorsReader {
       if (error.problem().kind != ErrorKind::usage) throw;
       for (std::size_t i = 0; i < list.size(); ++i)
         if (channel_word(list[i]) == error.problem().got)
-          refuse_scene_value("E0738",
-                             top_,
-                             list[i],
-                             fmt::format("sensors[{}]", i),
-                             fmt::format("{} in {}", error.problem().what, scene_.recording),
-                             error.problem().hint);
+          throw scene_refusal_at("E0738", top_, list[i], fmt::format("sensors[{}]", i))
+              .says("{} in {}", error.problem().what, scene_.recording)
+              .hint(error.problem().hint);
       throw;
     }
   }
@@ -126,7 +118,7 @@ class SensorsReader {
   void sensor(const Document& node, const std::string& path) {
     SceneSensor sensor;
     if (is_scalar(node)) {
-      if (scene_.simulate) refuse("E0743", {&node, path}, kNeedsModel, kModelHint);
+      if (scene_.simulate) throw refusal("E0743", {&node, path}).says(kNeedsModel).hint(kModelHint);
       sensor.name = sensor.channel = node.text;
       return add_matched(sensor, {&node, path});
     }
@@ -138,7 +130,8 @@ class SensorsReader {
     sensor.channel = at.text_or("channel", sensor.name);
     if (at.has("channel"))
       check_scene_text(top_, at.require("channel"), at.path_of("channel"), scene_);
-    if (sensor.h.empty()) refuse_scene("E0741", at, "h", "expected one weight a true input");
+    if (sensor.h.empty())
+      throw scene_refusal("E0741", at, "h").says("expected one weight a true input");
     if (at.has("model")) sensor.model = model(at);
     if (sensor.scale == 0) at.refuse("scale", "a scale of zero leaves nothing of the samples");
     if (!(std::abs(sensor.scale) >= 1e-100 && std::abs(sensor.scale) <= 1e100))
@@ -148,10 +141,9 @@ class SensorsReader {
     if (matched_ == nullptr || !at.has("name") || !at.has("channel"))
       return add_matched(sensor, place);
     if (matched_->size() > 1)
-      refuse("E0737",
-             place,
-             fmt::format("one name for {} channels", matched_->size()),
-             "leave name out: each sensor has its channel's");
+      throw refusal("E0737", place)
+          .says("one name for {} channels", matched_->size())
+          .hint("leave name out: each sensor has its channel's");
     sensor.channel = matched_->front();
     add(sensor, place);
   }
@@ -161,7 +153,8 @@ class SensorsReader {
     if (at.has("scale")) at.refuse("scale", "the samples of a simulation are used as they are");
     if (at.has("unit")) at.refuse("unit", "the unit of a simulated sensor is its model's");
     if (at.has("channel")) at.refuse("channel", "a simulated sensor's channel has its name");
-    if (!at.has("model")) refuse_scene("E0743", at, "model", kNeedsModel, kModelHint);
+    if (!at.has("model"))
+      throw scene_refusal("E0743", at, "model").says(kNeedsModel).hint(kModelHint);
   }
 
   // NAME1 … NAMEn from one model.
@@ -181,7 +174,7 @@ class SensorsReader {
   void add(const SceneSensor& sensor, const Place& place) {
     if (scene_.sensors.size() >= kMostSensors) refuse_number(scene_.sensors.size() + 1);
     if (place.node->kind == Document::Kind::null || sensor.name.empty())
-      refuse("E0737", place, "a sensor needs a name");
+      throw refusal("E0737", place).says("a sensor needs a name");
     check_scene_text(top_, *place.node, place.path, scene_);
     index_.places.push_back(place);
     scene_.sensors.push_back(sensor);
@@ -203,9 +196,8 @@ class SensorsReader {
     for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
       const std::string& name = scene_.sensors[i].name;
       if (!index_.by_name.emplace(name, i).second)
-        refuse("E0737",
-               index_.places[i],
-               fmt::format("two sensors have the name {}", printable(name, 40)));
+        throw refusal("E0737", index_.places[i])
+            .says("two sensors have the name {}", printable(name, 40));
       if (!small.emplace(lower(name), i).second)
         scene_.warnings.add("case_clash",
                             "names of sensors differ by capitals only",

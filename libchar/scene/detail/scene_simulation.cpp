@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_parts.hpp"
@@ -45,17 +45,14 @@ void refuse_keys_of_other_kinds(const Document& node,
     place.line = entry.line;
     place.column = entry.column;
     const std::vector<std::string>& own = signal_keys(kind);
-    throw Error(
-        {ErrorKind::input,
-         "E0739",
-         at.where(place),
-         fmt::format("{}: is a key of {}, and this signal is of kind {}",
-                     at.path_of(entry.key),
-                     others.size() > 5 ? "other kinds" : fmt::format("{}", fmt::join(others, ", ")),
-                     kind),
-         entry.key,
-         own.empty() ? fmt::format("{} needs no further key", kind)
-                     : fmt::format("{} reads {}", kind, fmt::join(own, ", "))});
+    throw input_error("E0739", at.where(place))
+        .says("{}: is a key of {}, and this signal is of kind {}",
+              at.path_of(entry.key),
+              others.size() > 5 ? "other kinds" : fmt::format("{}", fmt::join(others, ", ")),
+              kind)
+        .got(entry.key)
+        .hint(own.empty() ? fmt::format("{} needs no further key", kind)
+                          : fmt::format("{} reads {}", kind, fmt::join(own, ", ")));
   }
 }
 
@@ -70,7 +67,8 @@ std::vector<std::pair<double, double>> points_of(const MapReader& at) {
       at.refuse("points", "the times must rise");
     points.emplace_back(node.list[0].number, node.list[1].number);
   }
-  if (points.empty()) refuse_scene("E0736", at, "points", "expected at least one [seconds, value]");
+  if (points.empty())
+    throw scene_refusal("E0736", at, "points").says("expected at least one [seconds, value]");
   return points;
 }
 
@@ -83,7 +81,8 @@ std::size_t earlier_signal(const MapReader& at, const std::vector<std::string>& 
     if (of < earlier.size()) return static_cast<std::size_t>(of);
   }
   if (earlier.empty())
-    refuse_scene("E0738", at, "of", "is to name a signal before this one, and there is none");
+    throw scene_refusal("E0738", at, "of")
+        .says("is to name a signal before this one, and there is none");
   return index_of_name(at, "of", at.text("of"), earlier, "a signal that stands before this one");
 }
 
@@ -134,10 +133,8 @@ constexpr std::uint64_t kMostSamples = 1'000'000'000'000'000;  // every index ex
 
 std::uint64_t samples_of(const MapReader& at, double rate_hz) {
   if (at.has("samples") == at.has("duration_s"))
-    refuse_scene("E0735",
-                 at,
-                 at.has("samples") ? "samples" : "duration_s",
-                 "a simulation has either duration_s or samples");
+    throw scene_refusal("E0735", at, at.has("samples") ? "samples" : "duration_s")
+        .says("a simulation has either duration_s or samples");
   const char* key = at.has("samples") ? "samples" : "duration_s";
   const double samples = at.has("samples") ? static_cast<double>(at.count(key))
                                            : std::round(at.number(key, kPositive) * rate_hz);
@@ -159,22 +156,18 @@ void read_samples(SignalSpec& spec,
   spec.file = scene_file_of(at, "file", folder, scene);
   Recording log = read_recording(spec.file, reading);
   if (log.samples.size() != 1)
-    refuse_scene("E0742",
-                 at,
-                 "file",
-                 fmt::format("holds {} channels", log.samples.size()),
-                 "name one: channel: NAME");
+    throw scene_refusal("E0742", at, "file")
+        .says("holds {} channels", log.samples.size())
+        .hint("name one: channel: NAME");
   const double rate = log.info.time.rate_hz;
   if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
-    refuse_scene("E0742",
-                 at,
-                 "file",
-                 fmt::format("is a recording at {} Hz, and the simulation runs at {} Hz",
-                             brief_text(rate, 6),
-                             brief_text(simulation.rate_hz, 6)),
-                 "give the simulation the rate of the recording");
+    throw scene_refusal("E0742", at, "file")
+        .says("is a recording at {} Hz, and the simulation runs at {} Hz",
+              brief_text(rate, 6),
+              brief_text(simulation.rate_hz, 6))
+        .hint("give the simulation the rate of the recording");
   spec.samples = std::move(log.samples[0]);
-  if (spec.samples.empty()) refuse_scene("E0742", at, "file", "holds no sample");
+  if (spec.samples.empty()) throw scene_refusal("E0742", at, "file").says("holds no sample");
   if (spec.samples.size() < simulation.samples)
     scene.warnings.add("recorded_signal_short",
                        "a recorded signal ends before the simulation; its last sample is held",
@@ -207,16 +200,12 @@ void add_truth(const MapReader& at,
   std::string name = named == nullptr ? usual_name : named->value.text;
   const Document& place = named == nullptr ? node : named->value;
   if (name.empty() || name.find('\0') != std::string::npos)
-    throw Error({ErrorKind::input,
-                 "E0737",
-                 at.where(place),
-                 fmt::format("{}.name: the name of a signal is empty or holds a zero byte", path)});
+    throw input_error("E0737", at.where(place))
+        .says("{}.name: the name of a signal is empty or holds a zero byte", path);
   if (std::find(s.truth_names.begin(), s.truth_names.end(), name) != s.truth_names.end())
-    throw Error({ErrorKind::input,
-                 "E0737",
-                 at.where(place),
-                 fmt::format("{}.name: two truth signals have one name", path),
-                 name});
+    throw input_error("E0737", at.where(place))
+        .says("{}.name: two truth signals have one name", path)
+        .got(name);
   s.truth.push_back(std::move(spec));
   s.truth_names.push_back(std::move(name));
 }
@@ -228,7 +217,8 @@ void read_truth(const MapReader& at, ArraySimulation& s, const SceneFolder& fold
   s.truth_names.clear();
   if (node.kind != Document::Kind::list)
     return add_truth(at, node, path, "truth", s, folder, scene);
-  if (node.list.empty()) refuse_scene("E0736", at, "truth", "expected at least one signal");
+  if (node.list.empty())
+    throw scene_refusal("E0736", at, "truth").says("expected at least one signal");
   for (std::size_t j = 0; j < node.list.size(); ++j)
     add_truth(at,
               node.list[j],
@@ -273,7 +263,8 @@ std::string scene_recording_of(const MapReader& at,
       std::find(words.begin(), words.end(), reading.delimiter) == words.end())
     map.refuse("delimiter", "expected auto, tab, space or one character");
   if (reading.from_s && reading.to_s && !(*reading.from_s < *reading.to_s))
-    refuse_scene("E0740", map, "to_s", "the recording is read from a time to a later one");
+    throw scene_refusal("E0740", map, "to_s")
+        .says("the recording is read from a time to a later one");
   return scene_file_of(map, "file", folder, scene);
 }
 

@@ -21,15 +21,15 @@ std::optional<TimeWindow> window_of(const MapReader& at, std::string_view key) {
   TimeWindow window;
   const auto number = [&](const Document& node) {
     if (node.kind != Document::Kind::number)
-      refuse_scene_value("E0740", at, node, std::string(key), "expected a number");
+      throw scene_refusal_at("E0740", at, node, std::string(key)).says("expected a number");
     return node.number;
   };
   if (ends.size() != 2)
-    refuse_scene("E0740", at, key, "expected [from, to] in seconds, or [from, end]");
+    throw scene_refusal("E0740", at, key).says("expected [from, to] in seconds, or [from, end]");
   window.from_s = number(ends[0]);
   if (ends[1].text != "end") window.to_s = number(ends[1]);
   if (window.from_s < 0 || !(window.from_s < window.to_s))
-    refuse_scene("E0740", at, key, "expected 0 <= from < to");
+    throw scene_refusal("E0740", at, key).says("expected 0 <= from < to");
   return window;
 }
 

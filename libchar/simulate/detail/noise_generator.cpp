@@ -19,7 +19,7 @@
 #include <numbers>
 #include <variant>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/simulate/detail/kasdin.hpp"
 
@@ -28,50 +28,51 @@ namespace {
 
 constexpr std::size_t kBlock = 512;
 
-[[noreturn]] void refuse(std::string what, std::string got, std::string hint) {
-  throw Error({ErrorKind::usage, "E0953", "", std::move(what), std::move(got), std::move(hint)});
-}
-
 void check(const NoiseDesign& design) {
   if (!(std::isfinite(design.rate_hz) && design.rate_hz > 0))
-    refuse("the sample rate of a noise must be positive", shortest(design.rate_hz), "");
+    throw usage_error("E0953")
+        .says("the sample rate of a noise must be positive")
+        .got(shortest(design.rate_hz));
   for (std::size_t i = 0; i < kTerms; ++i) {
     const double value = design.coefficient[i];
     const bool fits = std::isfinite(value) && (value >= 0 || static_cast<Term>(i) == Term::ramp);
     if (!fits)
-      refuse("the noise coefficient " + std::string(kTermNames[i].key) +
-                 " must be a finite number, not negative",
-             shortest(value),
-             "");
+      throw usage_error("E0953")
+          .says("the noise coefficient " + std::string(kTermNames[i].key) +
+                " must be a finite number, not negative")
+          .got(shortest(value));
     if (!std::isfinite(value * std::max(design.rate_hz, 1 / design.rate_hz)))
-      refuse("the noise coefficient " + std::string(kTermNames[i].key) +
-                 " is too large for this sample rate",
-             shortest(value),
-             "");
+      throw usage_error("E0953")
+          .says("the noise coefficient " + std::string(kTermNames[i].key) +
+                " is too large for this sample rate")
+          .got(shortest(value));
   }
   const bool process =
       std::isfinite(design.gauss_markov_sigma) && design.gauss_markov_sigma >= 0 &&
       (design.gauss_markov_sigma == 0 ||
        (std::isfinite(design.gauss_markov_tau_s) && design.gauss_markov_tau_s > 0));
   if (!process)
-    refuse(
-        "a Gauss-Markov process needs a finite standard deviation, not negative, and a positive "
-        "correlation time",
-        shortest(design.gauss_markov_sigma) + ", " + shortest(design.gauss_markov_tau_s),
-        "");
+    throw usage_error("E0953")
+        .says(
+            "a Gauss-Markov process needs a finite standard deviation, not negative, and a "
+            "positive correlation time")
+        .got(shortest(design.gauss_markov_sigma) + ", " + shortest(design.gauss_markov_tau_s));
   if (design.bandwidth_hz && !(std::isfinite(*design.bandwidth_hz) && *design.bandwidth_hz > 0))
-    refuse(
-        "the bandwidth must be positive", shortest(*design.bandwidth_hz), "leave it out for none");
+    throw usage_error("E0953")
+        .says("the bandwidth must be positive")
+        .got(shortest(*design.bandwidth_hz))
+        .hint("leave it out for none");
   if (design.sampling == Sampling::band_limited && !design.bandwidth_hz)
-    refuse("noise that is band-limited before sampling needs a bandwidth",
-           "",
-           "give the bandwidth, or choose noise made sample by sample");
+    throw usage_error("E0953")
+        .says("noise that is band-limited before sampling needs a bandwidth")
+        .hint("give the bandwidth, or choose noise made sample by sample");
   if (design.flicker_method != "recursive" && design.flicker_method != "rv-truncated-iir")
-    refuse("unknown method of making flicker",
-           design.flicker_method,
-           "`recursive` or `rv-truncated-iir`");
+    throw usage_error("E0953")
+        .says("unknown method of making flicker")
+        .got(design.flicker_method)
+        .hint("`recursive` or `rv-truncated-iir`");
   if (design.flicker_method == "rv-truncated-iir" && design.truncated_taps == 0)
-    refuse("the truncated filter needs at least one coefficient", "0", "");
+    throw usage_error("E0953").says("the truncated filter needs at least one coefficient").got("0");
 }
 
 /// A first-order Gauss-Markov process at the samples: continuous white noise behind a low-pass is one.
@@ -238,7 +239,7 @@ struct NoiseGenerator::State {
 };
 
 NoiseGenerator::NoiseGenerator(const NoiseDesign& design, std::uint64_t seed, std::uint64_t sensor)
-    : state_(std::make_unique<State>()) {
+    : state_(detail::hidden<State>()) {
   check(design);
   const auto coefficient = [&design](Term term) {
     return design.coefficient[static_cast<std::size_t>(term)];
@@ -286,10 +287,6 @@ double NoiseGenerator::State::past_in_low_pass(const NoiseDesign& design,
     past += quantization->level * pass * (quantization->before - share * deviates.normal());
   return past;
 }
-
-NoiseGenerator::~NoiseGenerator() = default;
-NoiseGenerator::NoiseGenerator(NoiseGenerator&&) noexcept = default;
-NoiseGenerator& NoiseGenerator::operator=(NoiseGenerator&&) noexcept = default;
 
 double NoiseGenerator::low_pass_start() const {
   return state_->low_pass_start;

@@ -3,11 +3,11 @@
 // quantization noise and ramp with given coefficients (docs/theory/simulation.md).
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/simulate/detail/flicker.hpp"
 
@@ -41,9 +41,6 @@ class NoiseGenerator {
  public:
   /// Error(usage) when the design makes no sense.
   NoiseGenerator(const NoiseDesign& design, std::uint64_t seed, std::uint64_t sensor);
-  ~NoiseGenerator();
-  NoiseGenerator(NoiseGenerator&&) noexcept;
-  NoiseGenerator& operator=(NoiseGenerator&&) noexcept;
 
   /// Adds the next samples: to the first what the low-pass of the sensor is to filter together with
   /// its signal, y_t = a y_{t-1} + (1 - a) u_t with a = exp(-2 pi bandwidth/rate), to the second what
@@ -57,7 +54,7 @@ class NoiseGenerator {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

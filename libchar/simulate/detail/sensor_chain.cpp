@@ -201,9 +201,7 @@ struct SensorChain::State {
 };
 
 SensorChain::SensorChain(const SensorModel& model, const ChainOptions& options)
-    : state_(std::make_unique<State>(model, options)) {}
-SensorChain::~SensorChain() = default;
-SensorChain::SensorChain(SensorChain&&) noexcept = default;
+    : state_(detail::hidden<State>(model, options)) {}
 
 void SensorChain::run(std::span<double> samples, std::span<const double> temperature_degc) {
   State& s = *state_;

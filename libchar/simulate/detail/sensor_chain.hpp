@@ -2,9 +2,9 @@
 // One simulated device: the nine blocks of a sensor model, sample by sample.
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/model/sensor_model.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 
@@ -21,8 +21,6 @@ struct ChainOptions {
 class SensorChain {
  public:
   SensorChain(const SensorModel& model, const ChainOptions& options);
-  ~SensorChain();
-  SensorChain(SensorChain&&) noexcept;
 
   /// Turns the true input `samples`, in place, into what the device gives out. `temperature_degc`
   /// is as long, or empty: the model's reference temperature. A missing input is a missing output.
@@ -31,7 +29,7 @@ class SensorChain {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

@@ -120,9 +120,7 @@ struct ShapeFilter::State {
 ShapeFilter::ShapeFilter(const NoiseShape& shape,
                          double rate_hz,
                          std::function<void(std::span<double>)> source)
-    : state_(std::make_unique<State>(shape_taps(shape, rate_hz), std::move(source))) {}
-ShapeFilter::~ShapeFilter() = default;
-ShapeFilter::ShapeFilter(ShapeFilter&&) noexcept = default;
+    : state_(detail::hidden<State>(shape_taps(shape, rate_hz), std::move(source))) {}
 
 void ShapeFilter::add(std::span<double> out) {
   State& s = *state_;

@@ -2,10 +2,10 @@
 // Noise with the density of a shape: a finite impulse response over blocks, by fast convolution.
 
 #include <functional>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/core/numeric/noise_shape.hpp"
 
 namespace libchar {
@@ -21,14 +21,12 @@ class ShapeFilter {
   ShapeFilter(const NoiseShape& shape,
               double rate_hz,
               std::function<void(std::span<double>)> source);
-  ~ShapeFilter();
-  ShapeFilter(ShapeFilter&&) noexcept;
   /// Adds the next filtered samples; the same whatever the pieces.
   void add(std::span<double> out);
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

@@ -6,7 +6,7 @@
 #include <list>
 #include <new>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace {
 
@@ -65,10 +65,8 @@ void* allocated(std::size_t values, std::size_t bytes_each) {
                      : nullptr;
   if (memory == nullptr && values < kLong / bytes_each) throw std::bad_alloc();
   if (memory == nullptr)
-    throw Error({ErrorKind::numeric,
-                 "E0403",
-                 "",
-                 fmt::format("not enough memory for a Fourier transform of {} values", values)});
+    throw numeric_error("E0403").says("not enough memory for a Fourier transform of {} values",
+                                      values);
   return memory;
 }
 

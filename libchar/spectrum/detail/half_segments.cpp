@@ -51,10 +51,6 @@ class HalfSegments::Sums {
   double top = 0;         // bin h
 };
 
-void HalfSegments::SumsFreed::operator()(Sums* sums) const {
-  delete sums;
-}
-
 struct HalfSegments::State {
   std::shared_ptr<RowPool> pool;
   AlignedDoubles z;           // of the half before: even bins, then odd bins
@@ -133,10 +129,7 @@ bool HalfSegments::suits(const WelchOptions& options) {
 }
 
 HalfSegments::HalfSegments(std::size_t segment, RowPools* pools)
-    : state_(std::make_unique<State>(segment / 2, pools)) {}
-HalfSegments::~HalfSegments() = default;
-HalfSegments::HalfSegments(HalfSegments&&) noexcept = default;
-HalfSegments& HalfSegments::operator=(HalfSegments&&) noexcept = default;
+    : state_(detail::hidden<State>(segment / 2, pools)) {}
 
 std::size_t HalfSegments::half() const {
   return state_->pool->tables.h;
@@ -147,7 +140,7 @@ HalfSegments::Half HalfSegments::half_at(const double* samples, bool block) cons
 }
 
 HalfSegments::SumsPointer HalfSegments::zero_sums() const {
-  return SumsPointer(new Sums(half()));
+  return detail::hidden<Sums>(half());
 }
 
 HalfSegments::SumsPointer HalfSegments::copy_of(const Sums& sums) const {

@@ -3,9 +3,9 @@
 // Hann segments and for a block cosine transform.
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
+#include "libchar/core/hidden.hpp"
 #include "libchar/spectrum/welch.hpp"
 
 namespace libchar {
@@ -24,9 +24,6 @@ class HalfSegments {
 
   /// `pools`: tables and memory that several share, from any number of threads; none: its own.
   explicit HalfSegments(std::size_t segment, half_segments::RowPools* pools = nullptr);
-  ~HalfSegments();
-  HalfSegments(HalfSegments&&) noexcept;
-  HalfSegments& operator=(HalfSegments&&) noexcept;
 
   std::size_t half() const;
 
@@ -39,10 +36,7 @@ class HalfSegments {
 
   /// Sums of |X_k|^2 over segments, in the order of this object.
   class Sums;
-  struct SumsFreed {
-    void operator()(Sums* sums) const;
-  };
-  using SumsPointer = std::unique_ptr<Sums, SumsFreed>;
+  using SumsPointer = detail::Hidden<Sums>;
   SumsPointer zero_sums() const;
   SumsPointer copy_of(const Sums& sums) const;
   /// Bins 0 … half; and starts the sums from zero.
@@ -65,7 +59,7 @@ class HalfSegments {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

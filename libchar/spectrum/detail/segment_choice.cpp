@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 
 namespace libchar::welch_detail {
@@ -65,13 +65,11 @@ std::uint64_t choose_segment(std::span<const double> record,
   if (segment < kShortestSegment) {
     // Halving may step over a last chance: any run of eight.
     if (usable_segments(runs, layout_of(kShortestSegment, options.overlap)) == 0)
-      throw Error({ErrorKind::numeric,
-                   "E0401",
-                   "",
-                   fmt::format("a spectrum needs at least {} consecutive samples; the longest "
-                               "stretch without a missing one has {}",
-                               kShortestSegment,
-                               longest(runs))});
+      throw numeric_error("E0401").says(
+          "a spectrum needs at least {} consecutive samples; the longest stretch without a missing "
+          "one has {}",
+          kShortestSegment,
+          longest(runs));
     segment = kShortestSegment;
   }
   if (segment < wanted)

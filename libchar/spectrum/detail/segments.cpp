@@ -17,9 +17,9 @@
 #include <numbers>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/process/work.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar::welch_detail {
 namespace {
@@ -160,29 +160,22 @@ std::vector<double> neighbour_correlation(Window window,
 
 void check_options(const WelchOptions& options) {
   if (!(options.overlap >= 0 && options.overlap < 1))
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "`overlap`",
-                 "the overlap of segments is a fraction of a segment, from 0 to below 1",
-                 fmt::format("{}", options.overlap)});
+    throw usage_error("E0201", "`overlap`")
+        .says("the overlap of segments is a fraction of a segment, from 0 to below 1")
+        .got("{}", options.overlap);
   if (options.segment != 0 &&
       (options.segment < kShortestSegment || options.segment > kLongestSegment))
-    throw Error({ErrorKind::usage,
-                 "E0201",
-                 "`segment`",
-                 fmt::format("a segment has at least {} samples, and at most {}",
-                             kShortestSegment,
-                             kLongestSegment),
-                 fmt::format("{}", options.segment)});
+    throw usage_error("E0201", "`segment`")
+        .says(
+            "a segment has at least {} samples, and at most {}", kShortestSegment, kLongestSegment)
+        .got("{}", options.segment);
 }
 
 void check_rate(double rate_hz) {
   if (!(rate_hz > 0 && std::isfinite(rate_hz)))
-    throw Error({ErrorKind::numeric,
-                 "E0402",
-                 "",
-                 "a spectrum needs a finite sampling rate above zero",
-                 fmt::format("{}", rate_hz)});
+    throw numeric_error("E0402")
+        .says("a spectrum needs a finite sampling rate above zero")
+        .got("{}", rate_hz);
 }
 
 void note_dropped(std::uint64_t dropped, std::uint64_t used, std::vector<std::string>& notes) {
@@ -339,13 +332,11 @@ void Average::check_powers() const {
   double largest = 0;
   for (const double p : power_) largest = std::max(largest, std::isfinite(p) ? p : HUGE_VAL);
   if (std::isfinite(largest) && (largest >= kSmallest || moves_ || !moves_little_)) return;
-  throw Error(
-      {ErrorKind::numeric,
-       "E0420",
-       "",
-       "the squares of the samples do not fit into a double (deviations from 1e-100 to 1e100 do)",
-       "",
-       "give them in another unit"});
+  throw numeric_error("E0420")
+      .says(
+          "the squares of the samples do not fit into a double (deviations from 1e-100 to 1e100 "
+          "do)")
+      .hint("give them in another unit");
 }
 
 double Average::degrees_of_freedom(const std::vector<double>& window) const {
@@ -411,15 +402,13 @@ Spectrum Average::finish(const std::vector<double>& window,
                          double rate_hz,
                          std::uint64_t samples) const {
   if (used_ == 0)
-    throw Error({ErrorKind::numeric,
-                 "E0401",
-                 "",
-                 fmt::format("a spectrum with segments of {} samples needs as many without a "
-                             "missing one; none was found in {} samples",
-                             layout_.segment,
-                             samples),
-                 "",
-                 "choose a shorter segment"});
+    throw numeric_error("E0401")
+        .says(
+            "a spectrum with segments of {} samples needs as many without a missing one; none was "
+            "found in {} samples",
+            layout_.segment,
+            samples)
+        .hint("choose a shorter segment");
   Spectrum out = spectrum(window, rate_hz);
   note_dropped(out.dropped, out.segments, out.notes);
   return out;

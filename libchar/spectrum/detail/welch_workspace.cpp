@@ -32,7 +32,6 @@ void WelchWorkspace::State::give_back(Piece piece) {
   idle_.push_back(std::move(piece));
 }
 
-WelchWorkspace::WelchWorkspace() : state_(std::make_unique<State>()) {}
-WelchWorkspace::~WelchWorkspace() = default;
+WelchWorkspace::WelchWorkspace() : state_(detail::hidden<State>()) {}
 
 }  // namespace libchar

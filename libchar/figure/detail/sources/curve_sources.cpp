@@ -8,8 +8,8 @@
 
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/characterize/curves/curve_document.hpp"
-#include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
@@ -266,12 +266,9 @@ void add_wide_spectra(FigureSource& out, const std::string& file) {
       const auto value =
           c < row.cells.size() ? number_in(row.cells[c], table->decimal) : std::nullopt;
       if (value) return *value;
-      throw Error({ErrorKind::input,
-                   "E0311",
-                   fmt::format("{}:{}", file, row.line),
-                   "a number was expected in each column of the header",
-                   c < row.cells.size() ? row.cells[c].text : "",
-                   ""});
+      throw input_error("E0311", fmt::format("{}:{}", file, row.line))
+          .says("a number was expected in each column of the header")
+          .got(c < row.cells.size() ? row.cells[c].text : "");
     };
     const double f = number(0);
     two_sided = two_sided || f < 0;

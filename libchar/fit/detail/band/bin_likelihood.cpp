@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 
 namespace libchar {
@@ -25,29 +25,21 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   problem.dof.resize(n);
   problem.unit.resize(n, static_cast<int>(kTerms));
   if (bins.empty())
-    throw Error({ErrorKind::numeric,
-                 "E0401",
-                 "",
-                 "the record is too short: no frequency is left to be fitted"});
+    throw numeric_error("E0401").says("the record is too short: no frequency is left to be fitted");
   double largest = 0;
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
   constexpr double kLargestPower = 1e140,
                    kSmallestPower = 1e-140;  // so are their products and profiles
   if (largest > 0 && !(largest > kSmallestPower && largest < kLargestPower))
-    throw Error(
-        {ErrorKind::numeric,
-         "E0420",
-         "",
-         "the squares of the samples do not fit into a double (deviations from 1e-70 to 1e70 do)",
-         "",
-         "give them in another unit"});
+    throw numeric_error("E0420")
+        .says(
+            "the squares of the samples do not fit into a double (deviations from 1e-70 to 1e70 "
+            "do)")
+        .hint("give them in another unit");
   if (!(largest > 0)) {
-    throw Error(
-        {ErrorKind::numeric,
-         "E0412",
-         "",
-         "the record is constant, or its squares are too small for a double: there is no noise "
-         "to fit"});
+    throw numeric_error("E0412").says(
+        "the record is constant, or its squares are too small for a double: there is no noise to "
+        "fit");
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     const PowerBin& bin = bins[static_cast<std::size_t>(j)];

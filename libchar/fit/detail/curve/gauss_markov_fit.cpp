@@ -1,4 +1,4 @@
-// S(f) = 2 sigma² tau / (1 + (2 pi f tau)²), sampled (core/gauss_markov.hpp). For a given tau its expected squared coefficients are one
+// S(f) = 2 sigma² tau / (1 + (2 pi f tau)²), sampled (model/sensor_model.hpp). For a given tau its expected squared coefficients are one
 // column more of the linear model, so that the likelihood's maximum over the other unknowns is a function of ln tau alone: a scan by
 // octaves, then a parabola through its three lowest points, again and again. The column is lent by the ramp, which is a mean and is
 // offered elsewhere (events.hpp).

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/allan/gauss_markov_curves.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/spectrum/fft.hpp"
 

@@ -10,7 +10,7 @@
 
 namespace libchar {
 
-// Expected squared DCT-II coefficients of a first-order Gauss-Markov process (core/gauss_markov.hpp).
+// Expected squared DCT-II coefficients of a first-order Gauss-Markov process (model/sensor_model.hpp).
 
 /// E[c_k²] of a process of unit variance with phi = exp(-dt/tau), n samples; exact for integer k in 1..n-1, between them the mean of odd
 /// and even.

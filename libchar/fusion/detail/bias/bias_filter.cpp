@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fusion/detail/bias/riccati.hpp"
 
 namespace libchar::fusion {
@@ -104,13 +104,11 @@ BiasFilter::BiasFilter(const Array& array,
       white_(array.channels) {
   const Index n = array.channels, r = h_.cols();
   if (states_.size() > most_states)
-    throw Error({ErrorKind::usage,
-                 "E0865",
-                 "",
-                 "virtual-sensor would need " + std::to_string(states_.size()) +
-                     " states of drift for " + std::to_string(n) + " channels",
-                 std::to_string(most_states),
-                 "set most_states higher, or slowest_s lower"});
+    throw usage_error("E0865")
+        .says("virtual-sensor would need " + std::to_string(states_.size()) +
+              " states of drift for " + std::to_string(n) + " channels")
+        .got(std::to_string(most_states))
+        .hint("set most_states higher, or slowest_s lower");
   for (Index i = 0; i < n; ++i) white_[i] = array.noise_models[static_cast<std::size_t>(i)].white;
   add_inputs(input, array.rate_hz);
   const Index s = seen_.cols();

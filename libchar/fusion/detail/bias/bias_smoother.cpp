@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/fusion/detail/bias/riccati.hpp"
 
 namespace libchar::fusion {
@@ -48,13 +48,11 @@ void BiasSmoother::look(const Sample& y) {
   const auto bytes = static_cast<double>((channels_ + inputs_) * 8);
   if (count_ % kKeptTogether == 0) {
     if (static_cast<double>(count_ + kKeptTogether) * bytes > most_bytes_)
-      throw Error({ErrorKind::numeric,
-                   "E0868",
-                   "",
-                   "virtual-sensor with smoothed=1 keeps " + std::to_string(std::lround(bytes)) +
-                       " bytes an instant, and this run has more than fit into most_mb",
-                   std::to_string(std::llround(most_bytes_ / 1e6)) + " MB",
-                   "set most_mb higher, or evaluate a shorter part"});
+      throw numeric_error("E0868")
+          .says("virtual-sensor with smoothed=1 keeps " + std::to_string(std::lround(bytes)) +
+                " bytes an instant, and this run has more than fit into most_mb")
+          .got(std::to_string(std::llround(most_bytes_ / 1e6)) + " MB")
+          .hint("set most_mb higher, or evaluate a shorter part");
     kept_.emplace_back(channels_ + inputs_, kKeptTogether);
   }
   const Estimate estimate = filter_->step(y);

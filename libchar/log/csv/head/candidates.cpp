@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/csv/head/columns.hpp"
 #include "libchar/log/csv/rows/number.hpp"
 
@@ -173,12 +173,10 @@ char named_delimiter(const std::string& name) {
   if (name.size() == 1 && !is_digit(name[0]) && name[0] != '"' && name[0] != '\r' &&
       name[0] != '\n' && name[0] != '-' && name[0] != '+')
     return name[0];
-  throw Error({ErrorKind::usage,
-               "E0202",
-               "`delimiter`",
-               "unknown delimiter",
-               name,
-               "use auto, tab, space, or one character such as , or ;"});
+  throw usage_error("E0202", "`delimiter`")
+      .says("unknown delimiter")
+      .got(name)
+      .hint("use auto, tab, space, or one character such as , or ;");
 }
 
 std::string delimiter_name(char delimiter) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
@@ -58,10 +59,8 @@ char take_separator_line(Study& study) {
 
 void refuse_no_data(const Study& study) {
   if (!study.sample.empty()) return;
-  throw Error({ErrorKind::input,
-               "E0322",
-               at(study.info.file, 1, 1, 0),
-               "no data: the file holds only blank lines and comments"});
+  throw input_error("E0322", at(study.info.file, 1, 1, 0))
+      .says("no data: the file holds only blank lines and comments");
 }
 
 // Terminals put the time in front of every line: "[12:00:00.123] 1,2", "12:00:00.123 -> 1,2".
@@ -85,12 +84,10 @@ char given_decimal(const ReadOptions& options) {
   if (options.decimal == "auto") return 0;
   if (options.decimal == "comma") return ',';
   if (options.decimal == "point") return '.';
-  throw Error({ErrorKind::usage,
-               "E0202",
-               "`decimal`",
-               "unknown decimal mark",
-               options.decimal,
-               "use auto, point or comma"});
+  throw usage_error("E0202", "`decimal`")
+      .says("unknown decimal mark")
+      .got(options.decimal)
+      .hint("use auto, point or comma");
 }
 
 // That of the options, or of the file itself; 0 where neither says one.
@@ -141,16 +138,13 @@ void refuse_wrong_delimiter(const Study& study, const std::vector<Line>& lines) 
   });
   const Candidate looks = candidates(lines).front();
   if (odd == lines.end() || looks.columns < 2) return;
-  refuse(study,
-         *odd,
-         0,
-         "E0304",
-         fmt::format("with the delimiter {} the line is one field and not a number",
-                     delimiter_name(study.dialect.delimiter)),
-         std::string(odd->text),
-         fmt::format("the file looks separated by {} ({} columns): leave `delimiter` out",
-                     delimiter_name(looks.delimiter),
-                     looks.columns));
+  throw refusal(study, *odd, 0, "E0304")
+      .says("with the delimiter {} the line is one field and not a number",
+            delimiter_name(study.dialect.delimiter))
+      .got(std::string(odd->text))
+      .hint("the file looks separated by {} ({} columns): leave `delimiter` out",
+            delimiter_name(looks.delimiter),
+            looks.columns);
 }
 
 void choose_cells(Study& study, char separator) {
@@ -188,12 +182,10 @@ TableStart table_start(const Study& study) {
 void choose_header(Study& study) {
   const std::string& option = study.options.header;
   if (option != "auto" && option != "yes" && option != "no")
-    throw Error({ErrorKind::usage,
-                 "E0202",
-                 "`header`",
-                 "unknown header option",
-                 option,
-                 "use auto, yes or no"});
+    throw usage_error("E0202", "`header`")
+        .says("unknown header option")
+        .got(option)
+        .hint("use auto, yes or no");
   TableStart start = table_start(study);
   const std::vector<Line> lines = study.sample;
   if (!start.names) start.data = std::min(start.data, lines.size() - 1);
@@ -313,12 +305,10 @@ void gather_rows(Study& study) {
       study.rows.push_back(std::move(row));
   }
   if (study.rows.empty())
-    throw Error({ErrorKind::usage,
-                 "E0328",
-                 study.info.file,
-                 "no row has the value that is asked for",
-                 study.options.where.front(),
-                 "values are compared letter by letter"});
+    throw usage_error("E0328", study.info.file)
+        .says("no row has the value that is asked for")
+        .got(study.options.where.front())
+        .hint("values are compared letter by letter");
 }
 
 // Columns that are empty in the first rows may have words, or numbers, further on.
@@ -334,13 +324,10 @@ void find_kinds(Study& study) {
   if (!study.kinds.empty() && std::all_of(study.kinds.begin(),
                                           study.kinds.end(),
                                           [](ColumnKind kind) { return kind == ColumnKind::text; }))
-    refuse(study,
-           study.sample[0],
-           0,
-           "E0326",
-           "no column holds numbers",
-           std::string(study.sample[0].text),
-           "`delimiter` says what separates the cells, `skip_rows` where the table begins");
+    throw refusal(study, study.sample[0], 0, "E0326")
+        .says("no column holds numbers")
+        .got(std::string(study.sample[0].text))
+        .hint("`delimiter` says what separates the cells, `skip_rows` where the table begins");
 }
 
 // Words in front of averaging times or frequencies: a table of curves, whose rows are no samples.
@@ -356,13 +343,10 @@ void refuse_curve(const Study& study) {
       std::any_of(columns.begin(), columns.end(), [&](const Column& column) {
         return abscissa(column.name) || abscissa(column.text);
       }))
-    refuse(study,
-           study.sample[0],
-           0,
-           "E0326",
-           "a table of curves, not of samples: words in front of averaging times or frequencies",
-           std::string(study.sample[0].text),
-           "`channels` reads only the columns named there");
+    throw refusal(study, study.sample[0], 0, "E0326")
+        .says("a table of curves, not of samples: words in front of averaging times or frequencies")
+        .got(std::string(study.sample[0].text))
+        .hint("`channels` reads only the columns named there");
 }
 
 void choose_time(Study& study) {

@@ -12,7 +12,6 @@
 #include "libchar/core/units.hpp"
 #include "libchar/log/csv/line.hpp"
 #include "libchar/log/reading_fields.hpp"
-#include "libchar/log/time/calendar.hpp"
 
 namespace libchar::csv {
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/utf8.hpp"
@@ -23,12 +23,10 @@ std::optional<std::string> decoded(Study& study, const std::string& text) {
   if (encoding == "latin1") return latin1_to_utf8(text);
   if (encoding == "cp1252") return windows1252_to_utf8(text);
   if (encoding != "auto" && encoding != "utf-8")
-    throw Error({ErrorKind::usage,
-                 "E0202",
-                 "`encoding`",
-                 "unknown encoding",
-                 encoding,
-                 "use auto, utf-8, latin1 or cp1252"});
+    throw usage_error("E0202", "`encoding`")
+        .says("unknown encoding")
+        .got(encoding)
+        .hint("use auto, utf-8, latin1 or cp1252");
   if (first_invalid_utf8(text) == std::string::npos) return text;
   if (encoding == "utf-8" || study.marked_utf8) return std::nullopt;
   auto guessed = windows1252_to_utf8(text);
@@ -40,25 +38,19 @@ std::optional<std::string> decoded(Study& study, const std::string& text) {
 
 std::string header_text(Study& study, const Field& field, const Line& line, std::size_t indent) {
   if (field.text.size() > kMaxName)
-    refuse(study,
-           line,
-           field.offset + indent,
-           "E0305",
-           "channel name longer than 1024 bytes",
-           field.text);
+    throw refusal(study, line, field.offset + indent, "E0305")
+        .says("channel name longer than 1024 bytes")
+        .got(field.text);
   if (auto text = decoded(study, field.text)) return *text;
   const std::size_t invalid = first_invalid_utf8(field.text);
   const std::size_t column =
       field.offset + (field.quoted ? 1 : 0) + indent + (invalid == std::string::npos ? 0 : invalid);
-  refuse(study,
-         line,
-         column,
-         "E0302",
-         fmt::format("neither UTF-8 nor Windows-1252: byte 0x{:02X} at offset {}",
-                     static_cast<unsigned char>(field.text[invalid]),
-                     line.offset + column),
-         field.text,
-         "`encoding` latin1 takes every byte for the character of ISO 8859-1");
+  throw refusal(study, line, column, "E0302")
+      .says("neither UTF-8 nor Windows-1252: byte 0x{:02X} at offset {}",
+            static_cast<unsigned char>(field.text[invalid]),
+            line.offset + column)
+      .got(field.text)
+      .hint("`encoding` latin1 takes every byte for the character of ISO 8859-1");
 }
 
 // EuRoC writes "#timestamp [ns],w_RS_S_x [rad s^-1],…", Gulf Coast Data Concepts ";Headers,
@@ -106,15 +98,12 @@ void take_cell_unit(
   const std::string named = name_and_unit(column.text).second;
   const std::string& said = named.empty() ? column.unit_below : named;
   if (!said.empty() && !same_unit(said, unit))
-    refuse(study,
-           line,
-           field.offset,
-           "E0333",
-           fmt::format("a value in {}, and the header says {}",
-                       printable(decoded(study, unit).value_or(unit), 20),
-                       printable(said, 20)),
-           field.text,
-           "mend the one that is wrong");
+    throw refusal(study, line, field.offset, "E0333")
+        .says("a value in {}, and the header says {}",
+              printable(decoded(study, unit).value_or(unit), 20),
+              printable(said, 20))
+        .got(field.text)
+        .hint("mend the one that is wrong");
   if (said.empty()) column.unit_below = decoded(study, unit).value_or("");
   column.cell_unit = std::move(unit);
 }
@@ -163,18 +152,12 @@ void read_names(Study& study, const Line& line, std::string_view text) {
   bool open = false;
   const std::size_t indent = static_cast<std::size_t>(text.data() - line.text.data());
   if (const Cells all = cells_in(dialect, text, &open); open)
-    refuse(study,
-           line,
-           all.back().offset + indent,
-           "E0306",
-           "a quote is opened here and never closed in the header");
+    throw refusal(study, line, all.back().offset + indent, "E0306")
+        .says("a quote is opened here and never closed in the header");
   const Cells fields = table_cells(study, text);
   if (fields.size() > kMaxColumns)
-    refuse(study,
-           line,
-           0,
-           "E0305",
-           fmt::format("{} columns, the limit is {}", fields.size(), kMaxColumns));
+    throw refusal(study, line, 0, "E0305")
+        .says("{} columns, the limit is {}", fields.size(), kMaxColumns);
   std::size_t counted = 0, newline = std::string_view::npos;
   std::uint64_t lines = 0;
   for (const Field& field : fields) {
@@ -273,14 +256,12 @@ void name_columns(Dialect& dialect, LogInfo& info) {
           place_name(column.line, column.position));
     const auto [other, fresh] = seen.emplace(column.name, &column);
     if (!fresh)
-      throw Error({ErrorKind::input,
-                   "E0307",
-                   fmt::format("{}:{}:{}", info.file, column.line, column.position),
-                   fmt::format("two columns have the same name (first at {}:{})",
-                               other->second->line,
-                               other->second->position),
-                   column.name,
-                   "rename one, or read with `header` no and `skip_rows` 1 to use positions"});
+      throw input_error("E0307", fmt::format("{}:{}:{}", info.file, column.line, column.position))
+          .says("two columns have the same name (first at {}:{})",
+                other->second->line,
+                other->second->position)
+          .got(column.name)
+          .hint("rename one, or read with `header` no and `skip_rows` 1 to use positions");
   }
 }
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/csv/line.hpp"
 
 namespace libchar::csv {
@@ -103,8 +103,8 @@ bool is_echo(std::string_view head) {
          head.find("frame_id:") != std::string_view::npos;
 }
 
-[[noreturn]] void refuse(const std::string& file, const std::string& what, const char* hint) {
-  throw Error({ErrorKind::input, "E0301", at(file, 1, 1, 0), "content is " + what, "", hint});
+Refusal refusal(const std::string& file, const std::string& what) {
+  return input_error("E0301", at(file, 1, 1, 0)).says("content is " + what);
 }
 
 // Text has next to no control characters; NUL bytes are left to the row parser, which knows logs
@@ -123,50 +123,44 @@ void refuse_binary(std::string_view head, const std::string& file) {
   std::size_t line = 1, column = 1;
   for (std::size_t i = 0; i < first; ++i, ++column)
     if (head[i] == '\n') ++line, column = 0;
-  throw Error(
-      {ErrorKind::input,
-       "E0301",
-       at(file, line, column, first),
-       fmt::format("content is binary, not text: {} control characters in the first {} bytes",
-                   controls,
-                   std::min<std::size_t>(head.size(), 4096)),
-       "",
-       "`format` raw with a sidecar reads raw binary (docs: raw binary)"});
+  throw input_error("E0301", at(file, line, column, first))
+      .says("content is binary, not text: {} control characters in the first {} bytes",
+            controls,
+            std::min<std::size_t>(head.size(), 4096))
+      .hint("`format` raw with a sidecar reads raw binary (docs: raw binary)");
 }
 
 void refuse_magic(std::string_view head, const std::string& file) {
   for (const Magic& magic : kMagics)
     if (head.size() > magic.at && head.substr(magic.at).starts_with(magic.bytes))
-      refuse(file, std::string(magic.what) + ", not CSV", magic.hint);
-  if (is_utf16(head)) refuse(file, "UTF-16, not UTF-8", "convert it: iconv -f utf-16 -t utf-8");
+      throw refusal(file, std::string(magic.what) + ", not CSV").hint(magic.hint);
+  if (is_utf16(head))
+    throw refusal(file, "UTF-16, not UTF-8").hint("convert it: iconv -f utf-16 -t utf-8");
   if (is_telemetry_log(head))
-    refuse(file,
-           "a telemetry log (tlog) of MAVLink, not CSV",
-           "mavlogdump.py of pymavlink exports it as CSV");
+    throw refusal(file, "a telemetry log (tlog) of MAVLink, not CSV")
+        .hint("mavlogdump.py of pymavlink exports it as CSV");
   if (is_miniseed(head))
-    refuse(file,
-           "seismic records (miniSEED), not CSV",
-           "ObsPy reads them: obspy.read(FILE)[0].write('log.slist', format='SLIST')");
+    throw refusal(file, "seismic records (miniSEED), not CSV")
+        .hint("ObsPy reads them: obspy.read(FILE)[0].write('log.slist', format='SLIST')");
 }
 
 }  // namespace
 
 void refuse_other_content(std::string_view head, const std::string& file) {
-  if (head.empty())
-    throw Error({ErrorKind::input, "E0322", at(file, 1, 1, 0), "the file is empty"});
+  if (head.empty()) throw input_error("E0322", at(file, 1, 1, 0)).says("the file is empty");
   refuse_magic(head, file);
   refuse_binary(head, file);
   const std::size_t front = head.find_first_not_of(" \t\r\n");
   if (front == std::string_view::npos) return;
   if (is_echo(head.substr(front)))
-    refuse(file,
-           "messages as `rostopic echo` prints them, not CSV",
-           "a bag is read as it is; else print rows: rostopic echo -p TOPIC > log.csv; ros2 topic "
-           "echo has a form in CSV too");
+    throw refusal(file, "messages as `rostopic echo` prints them, not CSV")
+        .hint(
+            "a bag is read as it is; else print rows: rostopic echo -p TOPIC > log.csv; ros2 topic "
+            "echo has a form in CSV too");
   if (head[front] == '<')
-    refuse(file, "HTML or XML, not CSV", "was a web page saved in place of the file?");
+    throw refusal(file, "HTML or XML, not CSV").hint("was a web page saved in place of the file?");
   if (head[front] == '{')
-    refuse(file, "JSON, not CSV", "is this the sidecar of a raw log, or a result?");
+    throw refusal(file, "JSON, not CSV").hint("is this the sidecar of a raw log, or a result?");
 }
 
 }  // namespace libchar::csv

@@ -1,6 +1,6 @@
 #include "libchar/log/csv/head/sample.hpp"
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
 
 namespace libchar::csv {
@@ -32,12 +32,9 @@ Sample sample_lines(std::string_view head,
     const Line line = line_at(head, offset, number);
     if (line.end == LineEnd::none && !whole) {
       if (sample.lines.empty())  // else the row parser tells
-        throw Error({ErrorKind::input,
-                     "E0305",
-                     at(file, line.number, 1, line.offset),
-                     "line longer than 1 MiB",
-                     "",
-                     "is this a text file with line ends?"});
+        throw input_error("E0305", at(file, line.number, 1, line.offset))
+            .says("line longer than 1 MiB")
+            .hint("is this a text file with line ends?");
       break;
     }
     const std::string_view text = trimmed(line.text);

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar::csv {
 namespace {
@@ -54,19 +54,9 @@ void add_cells(const Dialect& dialect,
 
 }  // namespace
 
-void refuse(const Study& study,
-            const Line& line,
-            std::size_t column,
-            std::string code,
-            std::string what,
-            std::string got,
-            std::string hint) {
-  throw Error({ErrorKind::input,
-               std::move(code),
-               at(study.info.file, line.number, column + 1, line.offset + column),
-               std::move(what),
-               std::move(got),
-               std::move(hint)});
+Refusal refusal(const Study& study, const Line& line, std::size_t column, std::string code) {
+  return input_error(std::move(code),
+                     at(study.info.file, line.number, column + 1, line.offset + column));
 }
 
 Cells cells_in(const Dialect& dialect, std::string_view text, bool* open) {

@@ -2,6 +2,7 @@
 // What is known of the first bytes of a CSV file while its dialect is found out: a step reads what
 // those before it wrote.
 
+#include "libchar/core/refusal.hpp"
 #include "libchar/log/csv/head/columns.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
 
@@ -24,13 +25,8 @@ struct Study {
   NumberStyle style() const { return {dialect.decimal, dialect.thousands}; }
 };
 
-[[noreturn]] void refuse(const Study& study,
-                         const Line& line,
-                         std::size_t column,
-                         std::string code,
-                         std::string what,
-                         std::string got = "",
-                         std::string hint = "");
+/// About a place in a line.
+Refusal refusal(const Study& study, const Line& line, std::size_t column, std::string code);
 
 /// The cells of a line, a stamp in front of them first.
 Cells cells_in(const Dialect& dialect, std::string_view text, bool* open = nullptr);

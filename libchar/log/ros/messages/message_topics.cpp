@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/ros/messages/known_messages.hpp"
 
@@ -108,12 +108,10 @@ std::vector<std::size_t> MessageTopics::usual_fields(std::size_t topic) const {
 }
 
 void MessageTopics::refuse_source(std::size_t topic, std::string what) const {
-  throw Error({ErrorKind::usage,
-               "E0440",
-               path_,
-               fmt::format("messages of {} {}", printable(topics_[topic].name), what),
-               time_source_,
-               "`time_source` log takes the time at which they were recorded"});
+  throw usage_error("E0440", path_)
+      .says("messages of {} {}", printable(topics_[topic].name), what)
+      .got(time_source_)
+      .hint("`time_source` log takes the time at which they were recorded");
 }
 
 MessageTopics::Source MessageTopics::source_of(std::size_t topic) const {

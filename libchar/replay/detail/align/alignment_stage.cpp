@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/fusion/budget_meter.hpp"
@@ -37,32 +36,24 @@ LearningWindow window_of_alignment(const Scene& scene,
     out = {std::max(instants.instant_at(w.from_s), instants.settled()),
            instants.instant_at(w.to_s)};
   if (out.to - out.from < 2 && instants.settled() > instants.instant_at(w.from_s))
-    throw Error(
-        {ErrorKind::usage,
-         "E0939",
-         scene.file,
-         "align: the window ends before the filter has settled, which takes " +
-             duration_text(static_cast<double>(instants.settled()) / instants.info().rate_hz),
-         fmt::format("from {} s", brief_text(w.from_s, 6)),
-         "a later or longer window, or a filter of a higher corner"});
+    throw usage_error("E0939", scene.file)
+        .says("align: the window ends before the filter has settled, which takes " +
+              duration_text(static_cast<double>(instants.settled()) / instants.info().rate_hz))
+        .got("from {} s", brief_text(w.from_s, 6))
+        .hint("a later or longer window, or a filter of a higher corner");
   if (out.to - out.from < 2)
-    throw Error({ErrorKind::input,
-                 "E0903",
-                 scene.file,
-                 "align: the window holds fewer than two instants of the recording",
-                 fmt::format("from {} s", brief_text(w.from_s, 6)),
-                 ""});
+    throw input_error("E0903", scene.file)
+        .says("align: the window holds fewer than two instants of the recording")
+        .got("from {} s", brief_text(w.from_s, 6));
   return out;
 }
 
 Eigen::VectorXd weights_of(const Scene& scene, const Instants& instants) {
   if (instants.info().input_names.size() != 1)
-    throw Error({ErrorKind::input,
-                 "E0911",
-                 scene.file,
-                 "align: sensors are aligned to one true input",
-                 fmt::format("{} inputs", instants.info().input_names.size()),
-                 "one scene an axis; cross: [CHANNEL, …] names the other axes of each device"});
+    throw input_error("E0911", scene.file)
+        .says("align: sensors are aligned to one true input")
+        .got("{} inputs", instants.info().input_names.size())
+        .hint("one scene an axis; cross: [CHANNEL, …] names the other axes of each device");
   const Eigen::MatrixXd h = observations(scene, 1);
   if (h.size() == 0) return Eigen::VectorXd::Ones(static_cast<Eigen::Index>(scene.sensors.size()));
   return h.col(0);

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
@@ -274,15 +274,13 @@ void Instants::prepare(Progress& progress) {
   if (!asked.filters()) return;
   const double most_hz = info_.rate_hz / 2, highest_hz = std::max(asked.from_hz, asked.to_hz);
   if (highest_hz >= most_hz)
-    throw Error({ErrorKind::input,
-                 "E0912",
-                 scene_->file,
-                 fmt::format("{}: instants at {} Hz have nothing above {} Hz",
-                             asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
-                             brief_text(info_.rate_hz, 6),
-                             brief_text(most_hz, 6)),
-                 brief_text(highest_hz, 6),
-                 "corners are below half the rate"});
+    throw input_error("E0912", scene_->file)
+        .says("{}: instants at {} Hz have nothing above {} Hz",
+              asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
+              brief_text(info_.rate_hz, 6),
+              brief_text(most_hz, 6))
+        .got(brief_text(highest_hz, 6))
+        .hint("corners are below half the rate");
   preparation_.filter = band_filter(asked.from_hz, asked.to_hz, info_.rate_hz);
 }
 
@@ -309,18 +307,15 @@ void Instants::refuse_apart(double length_s) const {
   const double start_s = track_->start_s + scene_->reference->lag_s;
   const double end_s = start_s + static_cast<double>(track_->values[0].size()) / track_->rate_hz;
   const bool behind = start_s > length_s;
-  throw Error(
-      {ErrorKind::input,
-       "E0902",
-       scene_->file,
-       fmt::format("reference and recording have no time in common: the reference {} {} {}",
-                   behind ? "begins" : "ends",
-                   duration_text(behind ? start_s - length_s : -end_s),
-                   behind ? "after the recording ends" : "before the recording begins"),
-       "",
-       fmt::format("where one of them counts from its own start, lag_s: {} puts their first "
-                   "samples together; from_s and to_s choose stretches",
-                   brief_text(scene_->reference->lag_s - start_s, 12))});
+  throw input_error("E0902", scene_->file)
+      .says("reference and recording have no time in common: the reference {} {} {}",
+            behind ? "begins" : "ends",
+            duration_text(behind ? start_s - length_s : -end_s),
+            behind ? "after the recording ends" : "before the recording begins")
+      .hint(
+          "where one of them counts from its own start, lag_s: {} puts their first samples "
+          "together; from_s and to_s choose stretches",
+          brief_text(scene_->reference->lag_s - start_s, 12));
 }
 
 // The first and the last interval may reach beyond the recording: a mean over a part of one is no mean over it.

@@ -8,6 +8,8 @@
 // searched on means over blocks first, then sample by sample around the best lag.
 #include "libchar/replay/detail/align/lag.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +19,10 @@
 #include <vector>
 
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/refusal.hpp"
+#include "libchar/fusion/tilt_angle.hpp"
+#include "libchar/replay/detail/mean_uncertainty.hpp"
+#include "libchar/replay/detail/plan/plan.hpp"
 
 namespace libchar {
 namespace {
@@ -228,6 +234,163 @@ LagEstimate estimate_lag(std::span<const double> sensor,
       chosen = &top;
   if (!chosen) return result;
   return {chosen->lag / rate_hz, chosen->correlation};
+}
+
+// By how much the sensors lag the reference: the lag at which the sensors' mean and the reference
+// look most alike; for a tilt, the rate and the slope of the reference angle.
+
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+constexpr std::int64_t kMostInstants = 200000;
+constexpr double kMostLag_s = 2;
+/// Below it two signals have too little in common for their lag to mean anything.
+constexpr double kLeastCorrelation = 0.5;
+
+struct Pair {
+  std::vector<double> sensor, reference;
+};
+
+Pair series(const Scene& scene,
+            const Instants& instants,
+            std::int64_t from,
+            std::int64_t to,
+            Progress& progress) {
+  Pair out;
+  double before = kMissing;
+  instants.pass(from, to, kBlock, progress, [&](const InstantBlock& b) {
+    for (Eigen::Index k = 0; k < b.samples.cols(); ++k) {
+      if (scene.tilt) {
+        out.sensor.push_back(b.samples(static_cast<Eigen::Index>(scene.tilt->gyroscope), k));
+        out.reference.push_back(fusion::wrapped(b.truth(0, k) - before));
+        before = b.truth(0, k);
+      } else {
+        out.sensor.push_back(b.samples.col(k).mean());
+        out.reference.push_back(b.truth(0, k));
+      }
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
+double find_lag(const Scene& scene,
+                const Instants& instants,
+                const TimeWindow& window,
+                Progress& progress) {
+  if (instants.info().averaged > 1)
+    throw input_error("E0906", scene.file)
+        .says("reference.lag_s: a reference slower than the sensors does not show their lag")
+        .got("estimate")
+        .hint("give lag_s as a number of seconds");
+  const std::int64_t from = instants.instant_at(window.from_s);
+  const std::int64_t to = std::min(instants.instant_at(window.to_s), from + kMostInstants);
+  const Pair pair = series(scene, instants, from, to, progress);
+  const double rate_hz = instants.info().rate_hz;
+  const double most_s = std::min(kMostLag_s, static_cast<double>(to - from) / rate_hz / 4);
+  LagEstimate found = estimate_lag(pair.sensor, pair.reference, rate_hz, most_s);
+  // A difference of two samples stands in the middle between them, the rate at its own instant.
+  if (scene.tilt) found.lag_s += 0.5 / rate_hz;
+  if (!(found.correlation >= kLeastCorrelation))
+    throw numeric_error("E0908", scene.file)
+        .says("reference.lag_s: sensors and reference are too little alike to tell a lag")
+        .got("estimate")
+        .hint("give lag_s as a number of seconds");
+  return found.lag_s;
+}
+
+// d_k = x_ref,k - sum_i h_i y_i,k / sum_i h_i^2 over the sensors that are there;   offset = mean of d
+// Of a tilt d_k = wrapped(angle_ref,k - atan2(x_k, z_k)), about the first of them. The interval is
+// that of the mean of at most kMostBatches batch means: what is slower than a batch is all in them.
+
+namespace {
+
+constexpr std::size_t kOffsetBlock = 4096, kMostBatches = 8192;
+
+// Means of so many consecutive values that there are never too many of them.
+class BatchMeans {
+ public:
+  void push(double value) {
+    sum_ += value;
+    if (++filled_ < size_) return;
+    means_.push_back(sum_ / static_cast<double>(size_));
+    sum_ = 0;
+    filled_ = 0;
+    if (means_.size() < kMostBatches) return;
+    for (std::size_t k = 0; 2 * k + 1 < means_.size(); ++k)
+      means_[k] = 0.5 * (means_[2 * k] + means_[2 * k + 1]);
+    means_.resize(means_.size() / 2);
+    size_ *= 2;
+  }
+  const std::vector<double>& means() const { return means_; }
+  /// Of all values, those of an unfinished batch too.
+  double mean() const {
+    double sum = sum_;
+    for (const double m : means_) sum += m * static_cast<double>(size_);
+    return sum / static_cast<double>(count());
+  }
+  std::size_t count() const { return means_.size() * size_ + filled_; }
+
+ private:
+  std::vector<double> means_;
+  double sum_ = 0;
+  std::size_t size_ = 1, filled_ = 0;
+};
+
+double sensors_say(const Scene& scene,
+                   const Eigen::VectorXd& h,
+                   const Eigen::MatrixXd& samples,
+                   Eigen::Index k) {
+  if (scene.tilt)
+    return std::atan2(samples(static_cast<Eigen::Index>(scene.tilt->accelerometer_x), k),
+                      samples(static_cast<Eigen::Index>(scene.tilt->accelerometer_z), k));
+  double sum = 0, weight = 0;
+  for (Eigen::Index i = 0; i < h.size(); ++i)
+    if (std::isfinite(samples(i, k))) {
+      sum += h[i] * samples(i, k);
+      weight += h[i] * h[i];
+    }
+  return weight > 0 ? sum / weight : kMissing;
+}
+
+Refusal offset_refusal(const Scene& scene, const std::string& what) {
+  return input_error("E0913", scene.file).says("reference.offset: " + what).got("estimate");
+}
+
+}  // namespace
+
+OffsetEstimate find_reference_offset(const Scene& scene,
+                                     const Instants& instants,
+                                     std::int64_t from,
+                                     std::int64_t to,
+                                     Progress& progress) {
+  if (instants.info().input_names.size() != 1)
+    throw offset_refusal(scene,
+                         fmt::format("there are {} true inputs, and one is needed",
+                                     instants.info().input_names.size()))
+        .hint("give the offset as a number");
+  const Eigen::MatrixXd rows = observations(scene, 1);
+  const Eigen::VectorXd h =
+      rows.size() == 0 ? Eigen::VectorXd::Ones(static_cast<Eigen::Index>(scene.sensors.size()))
+                       : Eigen::VectorXd(rows.col(0));
+  BatchMeans differences;
+  double origin = kMissing;
+  instants.pass(from, to, kOffsetBlock, progress, [&](const InstantBlock& b) {
+    for (Eigen::Index k = 0; k < b.samples.cols(); ++k) {
+      double d = b.truth(0, k) - sensors_say(scene, h, b.samples, k);
+      if (!std::isfinite(d)) continue;
+      if (std::isnan(origin)) origin = d;
+      d -= origin;
+      differences.push(scene.tilt ? fusion::wrapped(d) : d);
+    }
+  });
+  if (differences.count() < 2)
+    throw offset_refusal(scene, "hardly any instant has both reference and sensors")
+        .hint("its stamps, its lag or its gaps put it elsewhere");
+  const MeanUncertainty known = mean_uncertainty(differences.means());
+  const double offset = origin + differences.mean();
+  return {scene.tilt ? fusion::wrapped(offset) : offset, known.reach95, known.long_memory};
 }
 
 }  // namespace libchar

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
@@ -59,12 +58,9 @@ ReferenceTrack read_reference(const Scene& scene, const SceneSource& source, Pro
   }
   track.rate_hz = read.info.time.rate_hz;
   if (!(track.rate_hz > 0))
-    throw Error({ErrorKind::input,
-                 "E0901",
-                 scene.file,
-                 fmt::format("the reference {} states no sampling rate", read.info.file),
-                 "",
-                 "reference: {recording: {file: …, rate_hz: …}}"});
+    throw input_error("E0901", scene.file)
+        .says("the reference {} states no sampling rate", read.info.file)
+        .hint("reference: {recording: {file: …, rate_hz: …}}");
   for (const std::string& channel : reference.channels) {
     const std::size_t column = column_of(read.info, channel, scene.file, "reference");
     track.values.push_back(read.samples[column]);

@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/replay/detail/align/reference_track.hpp"
 
 namespace libchar {
@@ -48,12 +47,6 @@ std::vector<std::size_t> rows_in_order(const std::vector<double>& stamps,
       rows.push_back(k);
   }
   return rows;
-}
-
-[[noreturn]] void refuse(const std::string& path,
-                         const std::string& what,
-                         const std::string& hint) {
-  throw Error({ErrorKind::input, "E0907", path, what, "", hint});
 }
 
 // Options of a second reading, of all channels in the order of the rows.
@@ -123,9 +116,9 @@ ResampledLog read_resampled(const std::string& path,
                             std::size_t first_angle,
                             Progress& progress) {
   if (!reading.names.empty())
-    refuse(path,
-           "recording: names and resample_hz do not go together",
-           "say channel: beside each sensor");
+    throw input_error("E0907", path)
+        .says("recording: names and resample_hz do not go together")
+        .hint("say channel: beside each sensor");
   ReadOptions whole = reading;
   whole.from_s.reset();
   whole.to_s.reset();
@@ -133,15 +126,16 @@ ResampledLog read_resampled(const std::string& path,
   ResampledLog out;
   out.log = read_log(path, whole, nothing, progress);
   if (out.log.time.column.empty())
-    refuse(path,
-           "recording.resample_hz: this log has no time stamps to go by",
-           "leave resample_hz out");
+    throw input_error("E0907", path)
+        .says("recording.resample_hz: this log has no time stamps to go by")
+        .hint("leave resample_hz out");
   const StampedRows rows = read_stamped_rows(path, of_all_rows(whole), progress);
   out.log.warnings = rows.info.warnings;
   const std::vector<double> stamps = seconds_since_first(rows.time_ns);
   const std::vector<std::size_t> used = rows_in_order(stamps, reading, out.log);
   if (used.size() < 2)
-    refuse(path, "recording.resample_hz: fewer than two rows with rising stamps", "");
+    throw input_error("E0907", path)
+        .says("recording.resample_hz: fewer than two rows with rising stamps");
   std::vector<double> t;
   t.reserve(used.size());
   for (const std::size_t k : used) t.push_back(stamps[k] - stamps[used[0]]);

@@ -21,7 +21,7 @@
 #include <numbers>
 #include <vector>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
@@ -31,10 +31,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kMostPhases = 1000;
 constexpr std::int64_t kMostHeld = 400;  // values that one sample remembers one by one
 constexpr double kForgotten = 45;        // e^-45 is nothing
-
-[[noreturn]] void refuse(const std::string& what, const std::string& got) {
-  throw Error({ErrorKind::usage, "E0915", "", what, got, ""});
-}
 
 struct Chain {
   double rate_hz;  // of the model
@@ -215,10 +211,13 @@ double quantization_variance(const SensorModel& m, const Chain& chain) {
 
 double sample_noise_variance(const SensorModel& m, double rate_hz, std::uint64_t oversampling) {
   if (!(rate_hz > 0) || !std::isfinite(rate_hz) || oversampling == 0)
-    refuse("the noise of a sample needs a sampling rate and an oversampling above zero",
-           shortest(rate_hz) + " Hz, " + std::to_string(oversampling));
+    throw usage_error("E0915")
+        .says("the noise of a sample needs a sampling rate and an oversampling above zero")
+        .got(shortest(rate_hz) + " Hz, " + std::to_string(oversampling));
   if (m.noise_sampling == NoiseSampling::band_limited && !m.bandwidth_hz)
-    refuse("noise that is band-limited before sampling needs a bandwidth", m.channel);
+    throw usage_error("E0915")
+        .says("noise that is band-limited before sampling needs a bandwidth")
+        .got(m.channel);
   Chain chain{
       rate_hz * static_cast<double>(oversampling), 0, static_cast<std::int64_t>(oversampling)};
   if (m.bandwidth_hz) chain.pole = std::exp(-2 * kPi * *m.bandwidth_hz / chain.rate_hz);

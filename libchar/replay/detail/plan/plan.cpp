@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/why_not.hpp"
@@ -20,14 +20,6 @@ namespace {
 // blocks large enough that reading the clock costs nothing.
 constexpr std::int64_t kBlocks = 512;
 constexpr std::int64_t kSmallestBlock = 256, kLargestBlock = 4096;
-
-[[noreturn]] void refuse(const Scene& scene,
-                         const char* code,
-                         const std::string& what,
-                         const std::string& got = "",
-                         const std::string& hint = "") {
-  throw Error({ErrorKind::input, code, scene.file, what, got, hint});
-}
 
 Eigen::MatrixXd observation_matrix(const Scene& scene, std::size_t inputs) {
   if (scene.tilt) return {};
@@ -164,7 +156,7 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene,
   if (live.size() == source.presence.size())
     live.clear();
   else if (live.empty())
-    refuse(scene, "E0909", "no sensor has samples in the evaluation");
+    throw input_error("E0909", scene.file).says("no sensor has samples in the evaluation");
   return live;
 }
 
@@ -182,12 +174,11 @@ void place_warm_up(const Scene& scene, const Instants& instants, ReplayPlan& pla
   plan.warm_up = std::max<std::int64_t>(
       std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz), settled - plan.run_from);
   if (plan.warm_up > plan.run_to - plan.run_from - 2)
-    refuse(scene,
-           "E0903",
-           settled > plan.run_from
-               ? "the evaluation ends before the filter has settled"
-               : "warm_up_s: it leaves fewer than two instants of the evaluation to score",
-           duration_text(static_cast<double>(plan.warm_up) / instants.info().rate_hz));
+    throw input_error("E0903", scene.file)
+        .says(settled > plan.run_from
+                  ? "the evaluation ends before the filter has settled"
+                  : "warm_up_s: it leaves fewer than two instants of the evaluation to score")
+        .got(duration_text(static_cast<double>(plan.warm_up) / instants.info().rate_hz));
 }
 
 // Seconds from the recording's first sample to instants.
@@ -201,12 +192,11 @@ void place_windows(const Scene& scene,
                        static_cast<double>(instants.info().count) / instants.info().rate_hz;
   const auto check = [&](const TimeWindow& window, const char* key) {
     if (window.from_s >= end_s)
-      refuse(scene,
-             "E0903",
-             fmt::format("{}: the window begins after the end of the recording, which is at {} s",
-                         key,
-                         brief_text(end_s, 6)),
-             brief_text(window.from_s, 6));
+      throw input_error("E0903", scene.file)
+          .says("{}: the window begins after the end of the recording, which is at {} s",
+                key,
+                brief_text(end_s, 6))
+          .got(brief_text(window.from_s, 6));
     if (std::isfinite(window.to_s) && window.to_s > end_s + 1 / instants.info().rate_hz)
       plan.warnings.add("window_beyond_end",
                         "a window reaches beyond the end of the recording and ends with it",
@@ -230,7 +220,8 @@ void place_windows(const Scene& scene,
   plan.run_from = instants.instant_at(plan.evaluation.from_s);
   plan.run_to = instants.instant_at(plan.evaluation.to_s);
   if (plan.run_to - plan.run_from < 2)
-    refuse(scene, "E0903", "evaluation: the window holds fewer than two instants");
+    throw input_error("E0903", scene.file)
+        .says("evaluation: the window holds fewer than two instants");
   place_warm_up(scene, instants, plan);
   for (const SensorFault& fault : instants.source().known_faults())
     if (fault.from_s >= end_s)
@@ -280,7 +271,9 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
   for (const SceneAlgorithm& algorithm : asked) {
     out.push_back(planned(algorithm, times[algorithm.name] > 1, scene));
     if (!labels.insert(out.back().label).second)
-      refuse(scene, "E0904", "an algorithm stands twice with the same options", out.back().label);
+      throw input_error("E0904", scene.file)
+          .says("an algorithm stands twice with the same options")
+          .got(out.back().label);
   }
   if (asked.empty() || options.no_skip)
     for (const fusion::Entry& entry : fusion::algorithms())
@@ -325,12 +318,10 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Array& array) {
 // What is shown where there is no reference, and what `no_skip` does where there is one.
 void keep_budget(const ReplayOptions& options, const fusion::Array& live, ReplayPlan& plan) {
   if (!(options.budget_s > 0))
-    throw Error({ErrorKind::usage,
-                 "E0917",
-                 "",
-                 "the budget of an algorithm (`budget_s`) must be above zero",
-                 duration_text(options.budget_s),
-                 "10 s is the default"});
+    throw usage_error("E0917")
+        .says("the budget of an algorithm (`budget_s`) must be above zero")
+        .got(duration_text(options.budget_s))
+        .hint("10 s is the default");
   for (PlannedAlgorithm& a : plan.algorithms)
     if (a.runs() && !a.learns_before() && !a.learns_run()) {
       a.blind = blind_share(
@@ -379,14 +370,11 @@ ReplayPlan make_plan(const Scene& scene,
   plan.without_reference = (!instants.info().has_reference || options.no_skip) && !scene.tilt;
   if (plan.without_reference) keep_budget(options, live, plan);
   if (!any([](const auto&) { return true; }))
-    throw Error(
-        {ErrorKind::numeric,
-         "E0905",
-         scene.file,
-         "no algorithm can run on this scene: " +
-             (plan.algorithms.empty() ? std::string("none was asked for") : plan.algorithms[0].why),
-         "",
-         "`explain_replay` says what each of them needs"});
+    throw numeric_error("E0905", scene.file)
+        .says("no algorithm can run on this scene: " + (plan.algorithms.empty()
+                                                            ? std::string("none was asked for")
+                                                            : plan.algorithms[0].why))
+        .hint("`explain_replay` says what each of them needs");
   const std::int64_t run = plan.run_to - plan.run_from;
   plan.block =
       options.block > 0

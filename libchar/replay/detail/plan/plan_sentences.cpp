@@ -8,7 +8,7 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
-#include "libchar/replay/view/preparation_words.hpp"
+#include "libchar/replay/view/words.hpp"
 
 namespace libchar {
 namespace {

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/error.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/replay/detail/plan/noise_level.hpp"
-#include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/detail/plan/rest.hpp"
 
 namespace libchar {
@@ -22,12 +21,9 @@ RestMeter at_rest(const Scene& scene, const Instants& instants, Progress& progre
   const std::int64_t from = std::max(instants.instant_at(scene.rest->from_s), instants.settled()),
                      to = instants.instant_at(scene.rest->to_s);
   if (to - from < 2)
-    throw Error({ErrorKind::input,
-                 "E0903",
-                 scene.file,
-                 "rest: the window holds fewer than two instants of the recording",
-                 "",
-                 instants.settled() > 0 ? "the filter has to settle first" : ""});
+    throw input_error("E0903", scene.file)
+        .says("rest: the window holds fewer than two instants of the recording")
+        .hint(instants.settled() > 0 ? "the filter has to settle first" : "");
   instants.pass(
       from, to, kRestBlock, progress, [&](const InstantBlock& b) { meter.push(b.samples); });
   return meter;
@@ -40,12 +36,9 @@ double model_factor(const Scene& scene, const Instants& instants, std::size_t se
   const std::string& own = model.sensitivity.unit.empty() ? model.unit : model.sensitivity.unit;
   const std::string& recorded = instants.source().info().units[sensor];
   if (const auto factor = unit_factor(own, recorded)) return *factor;
-  throw Error({ErrorKind::usage,
-               "E0938",
-               scene.sensors[sensor].name,
-               "its model is in " + own + ", and it is recorded in " + recorded,
-               "",
-               "give it the model of such a sensor"});
+  throw usage_error("E0938", scene.sensors[sensor].name)
+      .says("its model is in " + own + ", and it is recorded in " + recorded)
+      .hint("give it the model of such a sensor");
 }
 
 SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress) {

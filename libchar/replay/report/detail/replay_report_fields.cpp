@@ -4,8 +4,7 @@
 
 #include "libchar/replay/report/detail/report_rows.hpp"
 #include "libchar/replay/report/replay_report.hpp"
-#include "libchar/replay/view/alignment_words.hpp"
-#include "libchar/replay/view/preparation_words.hpp"
+#include "libchar/replay/view/words.hpp"
 
 namespace libchar {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/document/finding_fields.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/replay/report/detail/report_rows.hpp"
 
 namespace libchar {

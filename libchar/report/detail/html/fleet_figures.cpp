@@ -12,7 +12,6 @@
 #include "libchar/report/detail/charts.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/html/many_pieces.hpp"
 
 namespace libchar {
 namespace {

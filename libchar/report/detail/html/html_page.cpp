@@ -9,7 +9,7 @@
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/shell_word.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"

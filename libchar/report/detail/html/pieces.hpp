@@ -6,8 +6,12 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/limits.hpp"
 #include "libchar/core/document/json.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "libchar/lot/device_record.hpp"
+#include "libchar/replay/view/replay_view.hpp"
+#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/tables/coefficients.hpp"
 
 namespace libchar {
@@ -28,5 +32,16 @@ std::string many_provenance(std::span<const Characterization> recordings,
 Json many_head(const std::string& format,
                std::span<const Characterization> recordings,
                const std::vector<std::string>& command);
+
+// The judgement of limits as each output shows it.
+
+/// A section of the page.
+std::string limits_section(const LimitReport& report);
+
+// The alignment and the error budget of a replay, in each of its reports; "" without an alignment.
+
+std::string alignment_text(const ReplayView& view, const TextLook& look);
+std::string alignment_markdown(const ReplayView& view);
+std::string alignment_html(const ReplayView& view);
 
 }  // namespace libchar

@@ -13,4 +13,9 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows,
                        bool words_last = false,
                        std::size_t width = 0);
 
+/// Text, and a unit, as LaTeX has them: no package, no character beyond ASCII of those that units
+/// and numbers here consist of.
+std::string latex_text(const std::string& text);
+std::string latex_unit(const std::string& unit);
+
 }  // namespace libchar
