@@ -30,6 +30,7 @@
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "libchar/spectrum/fft.hpp"
+#include "tests/support/flicker.hpp"
 #include "tests/support/kasdin.hpp"
 
 using namespace libchar;
@@ -199,11 +200,13 @@ void error() {
       const double exact =
           k < 100 ? test::kasdin_series(1, static_cast<std::size_t>(k) + 1).back()
                   : (1 - z / 8 + z * z / 128 + 5 * z * z * z / 1024) / std::sqrt(kPi * k);
-      response = std::max(response, std::fabs(flicker_response(filter, k) / exact - 1));
-      variogram = std::max(
-          variogram, std::fabs(flicker_variogram(filter, k) / (4 / kPi * odd_harmonic(k)) - 1));
+      response = std::max(response, std::fabs(test::flicker_response(filter, k) / exact - 1));
+      variogram =
+          std::max(variogram,
+                   std::fabs(test::flicker_variogram(filter, k) / (4 / kPi * odd_harmonic(k)) - 1));
       const double nu = 0.5 * std::pow(n, -i / 4000.0);
-      power = std::max(power, std::fabs(flicker_power(filter, nu) * 2 * std::sin(kPi * nu) - 1));
+      power =
+          std::max(power, std::fabs(test::flicker_power(filter, nu) * 2 * std::sin(kPi * nu) - 1));
     }
     fmt::print("{:>16} {:>9} {:>12.2e} {:>12.2e} {:>12.2e}\n",
                static_cast<std::uint64_t>(n),

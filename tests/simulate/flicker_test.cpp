@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/allan/noise_curves.hpp"
+#include "tests/support/flicker.hpp"
 #include "tests/support/kasdin.hpp"
 
 using namespace libchar;
@@ -46,16 +47,18 @@ TEST_CASE("impulse response, spectrum and variogram of the filter are those of f
   for (const std::uint64_t length : kLengths) {
     const FlickerFilter filter = design_flicker(length);
     const double n = longest(length);
-    double response = std::fabs(flicker_response(filter, 0) - 1), power = 0, variogram = 0;
+    double response = std::fabs(test::flicker_response(filter, 0) - 1), power = 0, variogram = 0;
     for (double k : spread(1, std::max(2.0, n), 700)) {
       k = std::min(n, std::round(k));
-      response = std::max(response, std::fabs(flicker_response(filter, k) / exact_response(k) - 1));
+      response =
+          std::max(response, std::fabs(test::flicker_response(filter, k) / exact_response(k) - 1));
       const double exact = 4 / std::numbers::pi * odd_harmonic(k);
-      variogram = std::max(variogram, std::fabs(flicker_variogram(filter, k) / exact - 1));
+      variogram = std::max(variogram, std::fabs(test::flicker_variogram(filter, k) / exact - 1));
     }
     for (const double nu : spread(std::min(0.49, 0.5 / n), 0.5, 3000))
       power = std::max(
-          power, std::fabs(flicker_power(filter, nu) * 2 * std::sin(std::numbers::pi * nu) - 1));
+          power,
+          std::fabs(test::flicker_power(filter, nu) * 2 * std::sin(std::numbers::pi * nu) - 1));
     UNSCOPED_INFO("length " << length << ", " << filter.loss.size() << " sections: response "
                             << response << ", power " << power << ", variogram " << variogram);
     CHECK(response < 6e-7);
@@ -71,8 +74,8 @@ TEST_CASE("the Allan variance of the filter's output is flicker's to 1e-6") {
   constexpr std::size_t most = 1U << 13U;
   std::vector<long double> s(2 * most + 1, 0.0L);
   for (std::size_t n = 1; n < 2 * most; ++n)
-    s[n + 1] =
-        2 * s[n] - s[n - 1] + static_cast<long double>(flicker_variogram(filter, double(n))) / 2;
+    s[n + 1] = 2 * s[n] - s[n - 1] +
+               static_cast<long double>(test::flicker_variogram(filter, double(n))) / 2;
   for (std::size_t m = 1; m <= most; m *= 2) {
     const long double avar = (s[2 * m] - 4 * s[m]) / static_cast<long double>(m * m);
     CHECK(static_cast<double>(avar) ==
@@ -118,7 +121,7 @@ TEST_CASE("started at rest, an impulse gives the impulse response") {
   x[0] = 1;
   stream.run(x);
   for (std::size_t k = 0; k < x.size(); ++k)
-    CHECK(x[k] == Approx(flicker_response(filter, static_cast<double>(k))).epsilon(1e-13));
+    CHECK(x[k] == Approx(test::flicker_response(filter, static_cast<double>(k))).epsilon(1e-13));
 }
 
 TEST_CASE("started at rest, the record is that of the exact convolution") {
@@ -171,7 +174,7 @@ TEST_CASE("the increments of a stationary start are stationary") {
     }
   for (std::size_t t = 1; t <= length; ++t)
     for (std::size_t s = 1; s <= t; ++s)
-      row[t][n + s - 1] = flicker_response(filter, static_cast<double>(t - s));
+      row[t][n + s - 1] = test::flicker_response(filter, static_cast<double>(t - s));
   for (std::size_t t = 0; t < length; ++t)
     for (std::size_t lag = 1; t + lag <= length; lag = 2 * lag + 1) {
       double sum = 0;

@@ -27,7 +27,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <numbers>
 #include <span>
@@ -224,35 +223,6 @@ FlickerFilter design_flicker(std::uint64_t length) {
     filter.weight.push_back(slow.weight[k]);
   }
   return filter;
-}
-
-double flicker_response(const FlickerFilter& filter, double k) {
-  double sum = 0;
-  for (std::size_t j = 0; j < filter.loss.size(); ++j)
-    sum += filter.weight[j] * std::exp(k * std::log1p(-filter.loss[j]));
-  return sum;
-}
-
-double flicker_power(const FlickerFilter& filter, double nu) {
-  // 1 - p e^(-i w) = (1 - e^(-i w)) + q e^(-i w), the first bracket without cancellation
-  const double w = 2 * std::numbers::pi * nu, half = std::sin(w / 2);
-  const std::complex<double> chord(2 * half * half, std::sin(w)), turn(std::cos(w), -std::sin(w));
-  std::complex<double> sum = 0;
-  for (std::size_t j = 0; j < filter.loss.size(); ++j)
-    sum += filter.weight[j] / (chord + filter.loss[j] * turn);
-  return std::norm(sum);
-}
-
-double flicker_variogram(const FlickerFilter& filter, double n) {
-  double sum = 0;
-  for (std::size_t i = 0; i < filter.loss.size(); ++i) {
-    const double fall = -std::expm1(n * std::log1p(-filter.loss[i]));  // 1 - p^n
-    double shared = 0;
-    for (std::size_t j = 0; j < filter.loss.size(); ++j)
-      shared += filter.weight[j] / gap(filter.loss[i], filter.loss[j]);
-    sum += 2 * filter.weight[i] * fall * shared;
-  }
-  return sum;
 }
 
 std::vector<double> stationary_factor(const FlickerFilter& filter) {

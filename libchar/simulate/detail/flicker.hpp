@@ -34,14 +34,6 @@ inline constexpr std::uint64_t kLongestFlicker = std::uint64_t{1} << 40U;
 /// relative error of the variogram are below 1e-6.
 FlickerFilter design_flicker(std::uint64_t length);
 
-/// What the filter gives, computed from its sections (no simulation): impulse response at lag k,
-/// |H|^2 at nu cycles a sample, and the variogram E(y_{t+n} - y_t)^2 of its stationary output, unit
-/// driving noise. Fractional differencing has Gamma(k+1/2)/(Gamma(k+1) sqrt pi), 1/(2 sin pi nu),
-/// (4/pi) H_n.
-double flicker_response(const FlickerFilter& filter, double k);
-double flicker_power(const FlickerFilter& filter, double nu);
-double flicker_variogram(const FlickerFilter& filter, double n);
-
 /// Draws the states of the sections (weights not applied) from their joint stationary distribution.
 std::vector<double> stationary_states(const FlickerFilter& filter, DeviateStream& deviates);
 /// Row by row, the lower triangular factor L with L L' = stationary covariance of the states.
