@@ -22,6 +22,8 @@ struct FitOptions {
   bool gauss_markov = true;
   /// the samples are a clock's frequency: white and flicker phase noise are offered, no ramp and no Gauss-Markov process
   bool clock = false;
+  /// nothing shapes the top of the spectrum: no filter, no quantization noise that is too weak to be seen
+  bool white_top = false;
   /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
   bool events = true;
   /// stretches of the record are compared (a record that is kept only, remedies on)

@@ -21,6 +21,7 @@
 #include "libchar/fit/detail/band/contradiction.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/small_shape.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/gauss_markov_fit.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
@@ -48,6 +49,7 @@ struct Attempt {
   FitOptions options;
   NoiseFit fit;
   double half_deviance = 0;
+  ModelPoint best = {};
 };
 
 void require_enough(std::size_t bins, const TermSet& terms) {
@@ -90,6 +92,7 @@ Attempt attempt(const std::vector<PowerBin>& bins,
       goodness_of(inside_of(fit.residuals),
                   count_of(only_positive(fit.theta)) + static_cast<std::size_t>(out.band.orders));
   out.half_deviance = half_deviance(problem, best);
+  out.best = best;
   return out;
 }
 
@@ -292,8 +295,10 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
                      const FitOptions& options,
                      FitWorkspace* workspace) {
   Band band;
+  BandOptions band_options;
+  band_options.small_shapes = !options.clock && !options.white_top;
   if (options.remedies)
-    band = find_band(bins, rate_hz, options.terms);
+    band = find_band(bins, rate_hz, options.terms, band_options);
   else
     band = whole_band(bins, rate_hz);
   std::optional<GaussMarkovChoice> process;
@@ -309,6 +314,9 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   if (options.remedies) {
     report_band(now.band, bins, now.fit);
     answer_low_frequencies(now);
+    if (band_options.small_shapes && now.band.passes)
+      average_over_small_shapes(
+          bins, now.band, problem_of(bins, now.band, rate_hz), now.best, now.fit);
   }
   judge(now.fit, now.band.passes, allan);
   if (process) answer_process(bins, now.band, *process, now.fit);

@@ -324,13 +324,20 @@ std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& ban
   if (band.tau_s)
     for (PowerBin& bin : inside) bin.unit[kLentTerm] = gauss_markov_unit(bin, *band.tau_s, rate_hz);
   inside = filtered(std::move(inside), band.filter, rate_hz);
+  if (band.small.amplitude != 0)
+    for (PowerBin& bin : inside) {
+      const double gain = std::exp(small_shape_log_gain(band.small, bin, rate_hz));
+      for (double& unit : bin.unit) unit *= gain;
+    }
   return band.low_pass ? low_passed(std::move(inside), band.low_pass->corner_hz, rate_hz) : inside;
 }
 
-Band find_band(const std::vector<PowerBin>& bins,
-               double rate_hz,
-               const TermSet& terms,
-               const BandOptions& options) {
+namespace {
+
+Band passing_band(const std::vector<PowerBin>& bins,
+                  double rate_hz,
+                  const TermSet& terms,
+                  const BandOptions& options) {
   Band whole = whole_band(bins, rate_hz);
   whole.tau_s = options.tau_s;
   Search search{bins, rate_hz, terms, options, std::nullopt};
@@ -367,6 +374,46 @@ Band find_band(const std::vector<PowerBin>& bins,
   }
   if (best) return search.with_margin(*best);
   return search.closest ? search.closest->band : unshaped->band;
+}
+
+/// What is seen has a name, if that explains it as well: quantization noise where it rises, a low-pass where it falls.
+Band named_instead(const std::vector<PowerBin>& bins,
+                   double rate_hz,
+                   TermSet terms,
+                   Band plain,
+                   const Band& shaped) {
+  if (plain.quantized || plain.low_pass || plain.filter.kind != NoiseShape::Kind::none)
+    return shaped;
+  const auto deviance = [&](const Band& band) {
+    return score(bin_problem(bins_of(bins, band, rate_hz)), terms).half_deviance;
+  };
+  const double with_shape = deviance(shaped);
+  if (shaped.small.amplitude > 0) {
+    plain.quantized = true;
+    terms[kQuantizationTerm] = true;
+  } else {
+    plain.low_pass = fit_low_pass(bins_of(bins, plain, rate_hz), rate_hz, terms);
+    if (!plain.low_pass) return shaped;
+  }
+  if (!(deviance(plain) < with_shape)) return shaped;
+  take_small_shape(bins, rate_hz, terms, plain);
+  return plain;
+}
+
+}  // namespace
+
+Band find_band(const std::vector<PowerBin>& bins,
+               double rate_hz,
+               const TermSet& terms,
+               const BandOptions& options) {
+  Band band = passing_band(bins, rate_hz, terms, options);
+  if (!options.small_shapes || !band.passes || band.orders > 0) return band;
+  TermSet offered = terms;
+  offered[kQuantizationTerm] = offered[kQuantizationTerm] || band.quantized;
+  offered[kLentTerm] = offered[kLentTerm] || band.tau_s;
+  const Band plain = band;
+  if (take_small_shape(bins, rate_hz, offered, band) < options.seen) return band;
+  return named_instead(bins, rate_hz, offered, plain, band);
 }
 
 }  // namespace libchar

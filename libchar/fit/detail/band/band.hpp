@@ -8,6 +8,7 @@
 #include "libchar/core/numeric/noise_shape.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/low_pass.hpp"
+#include "libchar/fit/detail/band/small_shape.hpp"
 
 namespace libchar {
 
@@ -21,6 +22,7 @@ struct Band {
   std::optional<LowPassFit> low_pass;  ///< a first-order low-pass as well
   /// correlation time of a Gauss-Markov process that is among the terms, in the column of the ramp
   std::optional<double> tau_s;
+  SmallShape small;    ///< of the top, too small for the tests; where nothing else shapes it freely
   bool passes = true;  ///< the residuals are those of noise, or too few to judge
   Goodness goodness;   ///< of the band, its slowest coefficients left out
   Goodness top;        ///< of its top octave and a half
@@ -36,6 +38,9 @@ struct BandOptions {
       1e-6;  ///< and from here on by three: its misfit is said, and widens the intervals
   int most_orders = 4;
   std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
+  bool small_shapes = false;    ///< the top may have a shape that is too small for the tests
+  double seen =
+      3;  ///< standard deviations of such a shape from which on a filter with a name is tried
 };
 
 /// Every bin, without a shape.

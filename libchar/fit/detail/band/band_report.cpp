@@ -98,7 +98,8 @@ void describe_band(const std::vector<PowerBin>& bins,
     const bool slow = bins[j].high_hz <= band.top_hz && !residual.inside && bins[j].dof <= 1;
     if (residual.inside) {
       const double ratio = gain[inside++];
-      points.push_back({residual.frequency_hz, ratio, residual.dof});
+      const double small = std::exp(small_shape_log_gain(band.small, bins[j], rate_hz));
+      points.push_back({residual.frequency_hz, ratio * small, residual.dof});
       residual.model *= ratio;
       residual.z = normal_deviate(residual.measured / residual.model, residual.dof);
     } else if (!slow) {

@@ -1,0 +1,250 @@
+// A weak low-pass, quantization noise, a second tap, decimation: to first order each multiplies the spectrum by
+//   exp(a s^m),   s = sin²(pi f / rate),  m = 1, 2 or 4 (how steeply it sets in),  a of either sign.
+// The tests of the fit see it where a/sd(a) is beyond 3; N is wrong by more than its interval from 2 on. So whichever model passes is
+// averaged over it: with z = a_hat/sd(a) of the score test, theta conditional on a from the same information, and as prior of a/sd(a)
+// Cauchy's of scale 1.1,
+//   E ln theta   = ln theta_0 + sum_m w_m g_m E[a | z_m]
+//   cov ln theta = cov_0 + sum_m w_m g_m g_m' E[a² | z_m] - (its mean)(its mean)',
+//   g_m = d ln theta/da = -J^+ phi_m,  w_m ~ prior of m times the marginal likelihood of z_m,
+// J the weighted log slopes of the terms (and of a corner), phi_m those of the shape (J. A. Hoeting et al., "Bayesian Model Averaging",
+// Stat. Sci. 14 (1999) 382, with the score in the place of a second maximum: R. D. Cook and S. Weisberg, Biometrika 70 (1983) 1).
+// Heavy tails of the prior leave a shape that is seen as it is; the scale is the smallest with which an interval of N covers .90
+// whatever a is (white noise, m = 1: .90 at z = 3, .97 at 0, where the standard deviation is 1.3 bounds).
+#include "libchar/fit/detail/band/small_shape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "libchar/core/numeric/dense.hpp"
+#include "libchar/fit/detail/band/band.hpp"
+#include "libchar/fit/detail/band/scoring.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr double kScale = 1.4;  ///< of the prior, in standard deviations of the shape
+struct Family {
+  int power;
+  double weight;
+};
+/// Most sensors roll off from the first order on; the steeper, the later. Noise that rises does so as quantization noise does: the
+/// steeper families only fall.
+constexpr std::array<Family, 3> kFamilies = {{{1, 0.75}, {2, 0.15}, {4, 0.1}}};
+constexpr double kTaken =
+    1;  ///< standard deviations from which on the shape is a part of the model
+
+double mean_sine_power(const PowerBin& bin, double rate_hz, int power) {
+  constexpr int kNodes = 5;
+  double sum = 0;
+  for (int i = 0; i < kNodes; ++i) {
+    const double f = bin.low_hz + (bin.high_hz - bin.low_hz) * (i + 0.5) / kNodes;
+    const double sine = std::sin(std::numbers::pi * std::min(f / rate_hz, 0.5));
+    sum += std::pow(sine * sine, power) / kNodes;
+  }
+  return sum;
+}
+
+struct Posterior {
+  double marginal = 0;          ///< likelihood of z
+  double mean = 0, square = 0;  ///< of the shape in its standard deviations
+};
+
+Posterior posterior_of(double z, bool falls) {
+  constexpr double kReach = 8, kStep = 0.05;
+  Posterior out;
+  for (double d = z - kReach; d < z + kReach; d += kStep) {
+    if (falls && d > 0) break;
+    const double weight =
+        (falls ? 2 : 1) * std::exp(-0.5 * (z - d) * (z - d)) / (1 + d * d / (kScale * kScale));
+    out.marginal += weight;
+    out.mean += weight * d;
+    out.square += weight * d * d;
+  }
+  if (!(out.marginal > 0)) return out;
+  out.mean /= out.marginal;
+  out.square /= out.marginal;
+  return out;
+}
+
+/// The bins inside a band without its small shape.
+std::vector<PowerBin> inside_bins(const std::vector<PowerBin>& bins, const Band& band) {
+  std::vector<PowerBin> inside;
+  for (std::size_t j = 0; j < bins.size(); ++j)
+    if (band.inside[j] != 0) inside.push_back(bins[j]);
+  return inside;
+}
+
+/// Weighted log slopes of the terms and of the corner of a low-pass, and the residuals that would be there without the small shape.
+struct Slopes {
+  Eigen::ArrayXd root;  ///< sqrt(nu/2)
+  Eigen::MatrixXd columns;
+  std::vector<std::size_t> terms;
+  Eigen::VectorXd residual;  ///< sqrt(nu/2) (u - 1)
+  Eigen::VectorXd taken;     ///< sqrt(nu/2) times the log gain that is in the model
+};
+
+Slopes slopes_of(const std::vector<PowerBin>& inside,
+                 const Band& band,
+                 const BinProblem& problem,
+                 const Mixture& theta,
+                 const TermSet& terms,
+                 double rate_hz) {
+  Slopes out;
+  for (std::size_t i = 0; i < kTerms; ++i)
+    if (terms[i] || theta[i] > 0) out.terms.push_back(i);
+  out.root = (problem.dof / 2).sqrt();
+  const Eigen::ArrayXd model = mixture_of(problem, theta);
+  const auto count = static_cast<Eigen::Index>(out.terms.size());
+  out.columns.resize(problem.size(), count + (band.low_pass ? 1 : 0));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t term = out.terms[static_cast<std::size_t>(i)];
+    // Of a term at zero the slope by theta itself: its scale does not matter here.
+    const double scale = theta[term] > 0 ? theta[term] : 1;
+    out.columns.col(i) =
+        (out.root * scale * problem.unit.col(static_cast<Eigen::Index>(term)) / model).matrix();
+  }
+  out.residual = (out.root * (problem.energy / model - 1)).matrix();
+  out.taken.resize(problem.size());
+  for (Eigen::Index j = 0; j < problem.size(); ++j) {
+    const PowerBin& bin = inside[static_cast<std::size_t>(j)];
+    out.taken[j] = out.root[j] * small_shape_log_gain(band.small, bin, rate_hz);
+    if (band.low_pass)
+      out.columns(j, count) =
+          out.root[j] * low_pass_gain(bin, band.low_pass->corner_hz, rate_hz).log_slope;
+  }
+  return out;
+}
+
+/// What one family says: its posterior, and what it moves.
+struct Answer {
+  double sd = 0;          ///< of the amplitude; 0: nothing can be said
+  double weight = 0;      ///< not yet of sum one
+  Posterior posterior;    ///< in units of sd
+  Eigen::VectorXd slope;  ///< d ln theta / d amplitude, of Slopes::terms
+};
+
+Answer answer_of(const Slopes& slopes, const Eigen::VectorXd& shape, const Family& family) {
+  constexpr double kApart = 1e-6;  ///< of the shape's length that the terms leave over
+  Answer out;
+  const Eigen::VectorXd inside = pivoted_least_squares(slopes.columns, shape).x;
+  const Eigen::VectorXd apart = shape - slopes.columns * inside;
+  if (!(apart.norm() > kApart * shape.norm())) return out;
+  out.sd = 1 / apart.norm();
+  out.posterior =
+      posterior_of(apart.dot(slopes.residual + slopes.taken) * out.sd, family.power > 1);
+  out.weight = family.weight * out.posterior.marginal;
+  out.slope = -inside.head(static_cast<Eigen::Index>(slopes.terms.size()));
+  return out;
+}
+
+using Answers = std::array<Answer, kFamilies.size()>;
+
+Answers answers_of(const Slopes& slopes,
+                   const std::vector<PowerBin>& inside,
+                   const Band& band,
+                   double rate_hz) {
+  Answers out;
+  double total = 0;
+  for (std::size_t f = 0; f < kFamilies.size(); ++f) {
+    // Quantization noise and the corner of a low-pass are that of first order.
+    if (kFamilies[f].power == 1 && (band.quantized || band.low_pass)) continue;
+    Eigen::VectorXd shape(slopes.root.size());
+    for (Eigen::Index j = 0; j < shape.size(); ++j)
+      shape[j] = slopes.root[j] * small_shape_log_gain({kFamilies[f].power, 1},
+                                                       inside[static_cast<std::size_t>(j)],
+                                                       rate_hz);
+    out[f] = answer_of(slopes, shape, kFamilies[f]);
+    total += out[f].weight;
+  }
+  for (Answer& answer : out) answer.weight = total > 0 ? answer.weight / total : 0;
+  return out;
+}
+
+/// A coefficient after ln theta was moved by `shift` and got `variance` more.
+void move_term(double shift, double variance, Coefficient& term) {
+  const double before = *term.value, now = before * std::exp(shift / 2);
+  const double more = kNormal95 * kNormal95 * variance / 4;
+  const auto moved = [&](double end) {
+    if (!(end > 0) || !std::isfinite(end)) return end;
+    const double distance = std::log(end / before);
+    return now * std::exp(std::copysign(std::sqrt(distance * distance + more), distance));
+  };
+  term.ci95 = {moved(term.ci95.low), moved(term.ci95.high)};
+  term.relative_sd = std::sqrt(term.relative_sd * term.relative_sd + variance / 4);
+  term.value = now;
+}
+
+}  // namespace
+
+double small_shape_log_gain(const SmallShape& shape, const PowerBin& bin, double rate_hz) {
+  return shape.amplitude == 0 ? 0 : shape.amplitude * mean_sine_power(bin, rate_hz, shape.power);
+}
+
+double take_small_shape(const std::vector<PowerBin>& bins,
+                        double rate_hz,
+                        const TermSet& terms,
+                        Band& band) {
+  constexpr int kRounds = 2;
+  double taken = 0;
+  const std::vector<PowerBin> inside = inside_bins(bins, band);
+  for (int round = 0; round < kRounds; ++round) {
+    const BinProblem problem = bin_problem(bins_of(bins, band, rate_hz));
+    const ScoringResult now = score(problem, terms);
+    const Slopes slopes = slopes_of(inside, band, problem, now.at.theta, terms, rate_hz);
+    const Answers answers = answers_of(slopes, inside, band, rate_hz);
+    const auto best =
+        std::max_element(answers.begin(), answers.end(), [](const Answer& a, const Answer& b) {
+          return a.weight < b.weight;
+        });
+    if (!(best->weight > 0) || !(std::abs(best->posterior.mean) > kTaken)) return taken;
+    Band with = band;
+    with.small = {kFamilies[static_cast<std::size_t>(best - answers.begin())].power,
+                  best->posterior.mean * best->sd};
+    if (with.low_pass) {
+      with.low_pass.reset();
+      with.low_pass = fit_low_pass(bins_of(bins, with, rate_hz), rate_hz, terms);
+      if (!with.low_pass) return taken;
+    }
+    // Beyond the reach of a straight line through the score it is no small shape.
+    const BinProblem changed = bin_problem(bins_of(bins, with, rate_hz));
+    if (!(score(changed, terms).half_deviance < now.half_deviance)) return taken;
+    band = std::move(with);
+    taken = std::abs(best->posterior.mean);
+  }
+  return taken;
+}
+
+void average_over_small_shapes(const std::vector<PowerBin>& bins,
+                               const Band& band,
+                               const BinProblem& problem,
+                               const ModelPoint& best,
+                               NoiseFit& fit) {
+  if (problem.shapes() > 0 || problem.size() == 0 || count_of(only_positive(best.theta)) == 0)
+    return;
+  const std::vector<PowerBin> inside = inside_bins(bins, band);
+  const Slopes slopes = slopes_of(inside, band, problem, best.theta, {}, fit.rate_hz);
+  const auto n = static_cast<Eigen::Index>(slopes.terms.size());
+  // What the shape in the model has moved already is a part of the mean, not of the shift.
+  Eigen::VectorXd shift = pivoted_least_squares(slopes.columns, slopes.taken).x.head(n);
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
+  Eigen::MatrixXd more = Eigen::MatrixXd::Zero(n, n);
+  for (const Answer& answer : answers_of(slopes, inside, band, fit.rate_hz)) {
+    if (!(answer.weight > 0)) continue;
+    mean += answer.weight * answer.posterior.mean * answer.sd * answer.slope;
+    more += answer.weight * answer.posterior.square * answer.sd * answer.sd * answer.slope *
+            answer.slope.transpose();
+  }
+  more -= mean * mean.transpose();
+  shift += mean;
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const std::size_t i = slopes.terms[static_cast<std::size_t>(a)];
+    for (Eigen::Index b = 0; b < n; ++b)
+      fit.covariance[i][slopes.terms[static_cast<std::size_t>(b)]] += more(a, b);
+    fit.theta[i] *= std::exp(shift[a]);
+    if (fit.term[i].value) move_term(shift[a], std::max(0.0, more(a, a)), fit.term[i]);
+  }
+}
+
+}  // namespace libchar
