@@ -66,7 +66,7 @@ void require_enough(std::size_t bins, const TermSet& terms) {
 }
 
 BinProblem problem_of(const std::vector<PowerBin>& bins, const Band& band, double rate_hz) {
-  return bin_problem(bins_of(bins, band, rate_hz), band.orders, band.top_hz);
+  return band_problem(bins, band, rate_hz);
 }
 
 Attempt attempt(const std::vector<PowerBin>& bins,

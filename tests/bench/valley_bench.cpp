@@ -272,6 +272,16 @@ void run(const Kind& kind, int records) {
       valued[i] += fit.term[i].value && fit.term[i].status == Status::detected ? 1 : 0;
       right = right && holds_it;
     }
+    if (std::getenv("SHOW") != nullptr) {
+      fmt::print("  N {:.3f} B {:.3f} K {:.3f} (over truth) p {:.3f}, band to {:.3g} Hz",
+                 fit.term[0].value.value_or(0) / truth[0],
+                 fit.term[1].value.value_or(0) / truth[1],
+                 fit.term[2].value.value_or(0) / truth[2],
+                 fit.goodness.p,
+                 fit.band.top_hz);
+      for (const Remedy& remedy : fit.remedies) fmt::print("; {}", remedy.action);
+      fmt::print("\n");
+    }
     good += judged.rating == Rating::good ? 1 : 0;
     silent += judged.rating == Rating::good && !right ? 1 : 0;
     for (const Finding& finding : judged.findings) ++said[finding.code];

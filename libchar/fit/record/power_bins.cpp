@@ -64,6 +64,19 @@ class LocalFloor {
   std::vector<double> log_k_, log_floor_;
 };
 
+/// Median of the coefficients beside one, its nearest left out: near the zeros of a filter, and where the two ends of a smooth record
+/// make every second coefficient large, the floor bends faster than its stretches tell.
+double median_beside(const std::vector<double>& mean, std::size_t i, std::uint64_t first) {
+  constexpr std::size_t kNearest = 2;
+  const std::size_t reach = std::clamp<std::size_t>((first + i) / 64, 16, 128);
+  std::vector<double> beside;
+  for (std::size_t d = kNearest + 1; d <= kNearest + reach; ++d) {
+    if (i >= d) beside.push_back(mean[i - d]);
+    if (i + d < mean.size()) beside.push_back(mean[i + d]);
+  }
+  return beside.empty() ? 0 : median_in_place(beside, Middle::upper);
+}
+
 /// Marks a line and what it leaks into.
 void clip_around(std::size_t i, double excess, std::uint64_t first, std::vector<char>& clipped) {
   const double reach = std::min({std::sqrt(10 * excess),
@@ -82,7 +95,8 @@ LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::u
   const double dof = static_cast<double>(pooled);
   // Never nearer than 1.5: the floor itself is only that good where the spectrum bends.
   const double limit = std::max(1.5, chi_square_upper_quantile(kFalseAlarm, dof) / dof);
-  const LocalFloor floor(mean, first, chi_square_quantile(0.5, dof) / dof);
+  const double chi_median = chi_square_quantile(0.5, dof) / dof;
+  const LocalFloor floor(mean, first, chi_median);
   LineClip clip;
   const std::uint64_t end = first + mean.size();
   std::uint64_t k = std::max(first, kLowest);
@@ -99,6 +113,7 @@ LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::u
       const double width = std::clamp(static_cast<double>(k) / 8, 64.0, 2048.0);
       const double margin = 1 + 5 * std::sqrt(2 / dof / width), here = floor.at(piece, k);
       if (!(power > limit * margin * here)) continue;
+      if (!(power > limit * median_beside(mean, k - first, first) / chi_median)) continue;
       if (clip.clipped.empty()) clip.clipped.assign(mean.size(), 0);
       clip_around(k - first, here > 0 ? power / here : 1e6, first, clip.clipped);
     }

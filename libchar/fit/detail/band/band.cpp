@@ -15,6 +15,7 @@
 #include <limits>
 #include <numbers>
 
+#include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/band/scoring.hpp"
@@ -35,6 +36,8 @@ constexpr std::size_t kSkirt = 2;  ///< bins on each side of it that hold too mu
 constexpr std::size_t kMostLeftOut = 4;  ///< a quarter of the bins
 constexpr std::array<std::uint64_t, 13> kTaps = {2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 64};
 constexpr double kNull = 0.01;  ///< of a filter's power gain
+constexpr int kMany = 3;  ///< coefficients of a polynomial that stand for a filter with a corner
+constexpr double kAsWide = 0.7;
 constexpr auto kQuantizationTerm = static_cast<std::size_t>(Term::quantization);
 constexpr auto kLentTerm = static_cast<std::size_t>(Term::ramp);  ///< to a Gauss-Markov process
 
@@ -111,7 +114,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins,
   if (band.quantized) terms[kQuantizationTerm] = true;
   if (band.tau_s) terms[kLentTerm] = true;
   const std::vector<PowerBin> inside = bins_of(bins, band, rate_hz);
-  const BinProblem problem = bin_problem(inside, band.orders, band.top_hz);
+  const BinProblem problem = band_problem(bins, band, rate_hz);
   const ScoringResult best = score(problem, terms, start, 1e-6);
   if (!std::isfinite(best.half_deviance)) return std::nullopt;
   const Eigen::ArrayXd model = model_of(problem, best.at);
@@ -251,6 +254,62 @@ struct Search {
     }
   }
 
+  /// The widest band that passes with a filter or loop of low corner, its corner inside.
+  std::optional<Trial> widest_named(const Band& from, NamedShape::Family family) const {
+    constexpr int kCuts = 10;
+    // A corner shows by what is beyond it; less damped it is a peak.
+    constexpr double kInside = 0.5, kLow = 1.0 / 12, kDamped = 0.25;
+    Band band = from;
+    std::optional<NamedShape> shape;
+    TermSet offered = terms;
+    offered[kLentTerm] = offered[kLentTerm] || from.tau_s;
+    for (int cut = 0; cut < kCuts; ++cut) {
+      band = cut_at(from, bins, rate_hz / 2 * std::exp2(-kBandStep * cut));
+      if (members(bins, band).size() < kFewestBins) break;
+      shape = fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, offered, family, shape);
+      if (!shape) break;
+      if (shape->pole_hz > std::min(kInside * band.top_hz, kLow * rate_hz) ||
+          shape->damping < kDamped) {
+        shape.reset();
+        continue;
+      }
+      band.named = *shape;
+      band.orders = static_cast<int>(unknowns_of(family));
+      std::optional<Trial> trial = at(band);
+      if (!trial || !trial->band.passes) continue;
+      if (!needed(*trial)) return std::nullopt;
+      return trial;
+    }
+    return std::nullopt;
+  }
+
+  /// Not where a polynomial of as many coefficients explains the same band as well.
+  bool needed(const Trial& named) const {
+    constexpr double kWorth = 1;  ///< of ln L
+    Band plain = named.band;
+    plain.named = {};
+    const std::optional<Trial> trial = at(plain);
+    return !trial || trial->half_deviance - named.half_deviance > kWorth;
+  }
+
+  /// The same over all families: the widest, then the fewest unknowns, then the likeliest.
+  std::optional<Band> named(const Band& from) const {
+    std::optional<Trial> best;
+    using Family = NamedShape::Family;
+    for (const Family family : {Family::second_order, Family::shelf, Family::loop}) {
+      if (family == Family::loop && best) break;  // what is simpler explains it
+      std::optional<Trial> trial = widest_named(from, family);
+      if (!trial) continue;
+      const bool wider = best && trial->band.top_hz > 1.01 * best->band.top_hz;
+      const bool same = best && trial->band.top_hz > 0.99 * best->band.top_hz &&
+                        trial->band.orders == best->band.orders &&
+                        trial->half_deviance < best->half_deviance;
+      if (!best || wider || same) best = std::move(trial);
+    }
+    if (!best) return std::nullopt;
+    return best->band;
+  }
+
   /// Without its broad peaks and their skirts, the highest first, each seen beside what is left of the others.
   Band without_peaks(Band band) const {
     std::size_t most = band.inside.size() / kMostLeftOut;
@@ -324,15 +383,67 @@ std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& ban
   if (band.tau_s)
     for (PowerBin& bin : inside) bin.unit[kLentTerm] = gauss_markov_unit(bin, *band.tau_s, rate_hz);
   inside = filtered(std::move(inside), band.filter, rate_hz);
-  if (band.small.amplitude != 0)
-    for (PowerBin& bin : inside) {
-      const double gain = std::exp(small_shape_log_gain(band.small, bin, rate_hz));
-      for (double& unit : bin.unit) unit *= gain;
-    }
+  for (PowerBin& bin : inside) {
+    const double gain = std::exp(band_log_gain(band, bin, rate_hz));
+    for (double& unit : bin.unit) unit *= gain;
+  }
   return band.low_pass ? low_passed(std::move(inside), band.low_pass->corner_hz, rate_hz) : inside;
 }
 
+double band_log_gain(const Band& band, const PowerBin& bin, double rate_hz) {
+  return small_shape_log_gain(band.small, bin, rate_hz) + named_log_gain(band.named, bin, rate_hz);
+}
+
+BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, double rate_hz) {
+  const std::vector<PowerBin> inside = bins_of(bins, band, rate_hz);
+  const std::size_t unknowns = unknowns_of(band.named.family);
+  if (unknowns == 0) return bin_problem(inside, band.orders, band.top_hz);
+  BinProblem problem = bin_problem(inside);
+  const Eigen::ArrayXd root = (problem.dof / 2).sqrt();
+  Eigen::MatrixXd slopes(problem.size(), static_cast<Eigen::Index>(unknowns));
+  for (Eigen::Index j = 0; j < problem.size(); ++j) {
+    const auto slope = named_log_slopes(band.named, inside[static_cast<std::size_t>(j)], rate_hz);
+    for (std::size_t k = 0; k < unknowns; ++k)
+      slopes(j, static_cast<Eigen::Index>(k)) = root[j] * slope[k];
+  }
+  problem.shape = thin_qr(slopes).q.array().colwise() / root;
+  return problem;
+}
+
 namespace {
+
+/// The largest deviate of a score test for a shelf (ln gain = a s/(s + s_c)) with its corner at one of the octaves of the band.
+double shelf_deviate(const std::vector<PowerBin>& bins,
+                     const Band& band,
+                     double rate_hz,
+                     const TermSet& terms) {
+  constexpr int kOctaves = 8;
+  const BinProblem problem = band_problem(bins, band, rate_hz);
+  const ScoringResult best = score(problem, terms);
+  if (!std::isfinite(best.half_deviance)) return 0;
+  const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = model_of(problem, best.at);
+  std::vector<Eigen::Index> in;
+  for (std::size_t i = 0; i < kTerms; ++i)
+    if (terms[i]) in.push_back(static_cast<Eigen::Index>(i));
+  Eigen::MatrixXd columns(problem.size(), static_cast<Eigen::Index>(in.size()));
+  for (std::size_t i = 0; i < in.size(); ++i)
+    columns.col(static_cast<Eigen::Index>(i)) = (root * problem.unit.col(in[i]) / model).matrix();
+  const Eigen::MatrixXd basis = column_basis(columns);
+  const Eigen::VectorXd residual = (root * (problem.energy / model - 1)).matrix();
+  double largest = 0;
+  for (int octave = 2; octave < 2 + kOctaves; ++octave) {
+    const double corner = std::exp2(-octave) * rate_hz / 2;
+    Eigen::VectorXd shape(problem.size());
+    for (Eigen::Index j = 0; j < problem.size(); ++j) {
+      const double f = bins[static_cast<std::size_t>(j)].frequency_hz / corner;
+      shape[j] = root[j] * f * f / (1 + f * f);
+    }
+    const Eigen::VectorXd apart = without_columns_of(basis, shape);
+    if (apart.norm() > 1e-3 * shape.norm())
+      largest = std::max(largest, std::abs(apart.dot(residual)) / apart.norm());
+  }
+  return largest;
+}
 
 Band passing_band(const std::vector<PowerBin>& bins,
                   double rate_hz,
@@ -343,7 +454,8 @@ Band passing_band(const std::vector<PowerBin>& bins,
   Search search{bins, rate_hz, terms, options, std::nullopt};
   const std::optional<Trial> unshaped = search.at(whole);
   if (!unshaped) return whole;
-  if (std::min(unshaped->band.goodness.p, unshaped->band.top.p) >= options.probability_unshaped) {
+  if (std::min(unshaped->band.goodness.p, unshaped->band.top.p) >= options.probability_unshaped &&
+      !(shelf_deviate(bins, whole, rate_hz, terms) > options.shelf)) {
     Band band = unshaped->band;
     band.passes = true;
     return band;
@@ -361,6 +473,10 @@ Band passing_band(const std::vector<PowerBin>& bins,
   if (low_pass.low_pass)
     if (const auto trial = search.at(low_pass); trial && trial->band.passes) return trial->band;
   std::optional<Band> best = search.widest(whole, rate_hz / 2);
+  const bool simple = best && best->orders < kMany;
+  const std::optional<Band> named =
+      simple && best->top_hz > 0.99 * rate_hz / 2 ? std::nullopt : search.named(whole);
+  if (named && (!simple || named->top_hz > kAsWide * best->top_hz)) return *named;
   if (!best || best->top_hz < rate_hz / 2 * 0.99) best = search.wider_between_peaks(whole, best);
   // One clean record in a hundred is here by chance, and where the chance is in its slow part only a deep cut takes it away.
   // Filters and motion are told from chance by far less than a millionth.

@@ -8,17 +8,19 @@
 #include "libchar/core/numeric/noise_shape.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/low_pass.hpp"
+#include "libchar/fit/detail/band/named_shape.hpp"
 #include "libchar/fit/detail/band/small_shape.hpp"
 
 namespace libchar {
 
 /// Bins, the shape that multiplies their expectations, and how well that describes them.
 struct Band {
-  double top_hz = 0;                   ///< bins end here; half the rate where nothing is left out
-  std::vector<char> inside;            ///< of every bin: is it fitted?
-  NoiseShape filter;                   ///< a filter known by name (boxcar, Bartlett), or none
-  int orders = 0;                      ///< of the polynomial of the shape beyond that
-  bool quantized = false;              ///< quantization noise is among the terms
+  double top_hz = 0;         ///< bins end here; half the rate where nothing is left out
+  std::vector<char> inside;  ///< of every bin: is it fitted?
+  NoiseShape filter;         ///< a filter known by name (boxcar, Bartlett), or none
+  int orders = 0;            ///< of the polynomial of the shape beyond that, or unknowns of `named`
+  NamedShape named;          ///< a filter or loop with a low corner in its place
+  bool quantized = false;    ///< quantization noise is among the terms
   std::optional<LowPassFit> low_pass;  ///< a first-order low-pass as well
   /// correlation time of a Gauss-Markov process that is among the terms, in the column of the ramp
   std::optional<double> tau_s;
@@ -39,6 +41,8 @@ struct BandOptions {
   int most_orders = 4;
   std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
   bool small_shapes = false;    ///< the top may have a shape that is too small for the tests
+  double shelf =
+      3.4;  ///< deviate of a directed test from which on a shelf is looked for: .5 % of clean records
   double seen =
       3;  ///< standard deviations of such a shape from which on a filter with a name is tried
 };
@@ -55,6 +59,12 @@ Band find_band(const std::vector<PowerBin>& bins,
 
 /// The bins of a band, expectations times its filter.
 std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& band, double rate_hz);
+
+/// Their likelihood, with the polynomial or, around its maximum, the unknowns of the named shape free.
+BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, double rate_hz);
+
+/// ln of what the named and the small shape of a band make of a bin.
+double band_log_gain(const Band& band, const PowerBin& bin, double rate_hz);
 
 /// Expectations times a ratio averaged over each bin.
 std::vector<PowerBin> filtered(std::vector<PowerBin> bins,

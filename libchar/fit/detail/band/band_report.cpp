@@ -98,12 +98,14 @@ void describe_band(const std::vector<PowerBin>& bins,
     const bool slow = bins[j].high_hz <= band.top_hz && !residual.inside && bins[j].dof <= 1;
     if (residual.inside) {
       const double ratio = gain[inside++];
-      const double small = std::exp(small_shape_log_gain(band.small, bins[j], rate_hz));
-      points.push_back({residual.frequency_hz, ratio * small, residual.dof});
+      const double known = std::exp(band_log_gain(band, bins[j], rate_hz));
+      points.push_back({residual.frequency_hz, ratio * known, residual.dof});
       residual.model *= ratio;
       residual.z = normal_deviate(residual.measured / residual.model, residual.dof);
     } else if (!slow) {
-      points.push_back({residual.frequency_hz, residual.measured / residual.model, residual.dof});
+      const double known = std::exp(band_log_gain(band, bins[j], rate_hz));
+      points.push_back(
+          {residual.frequency_hz, known * residual.measured / residual.model, residual.dof});
     }
   }
   fit.shape =
@@ -170,7 +172,12 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
                                             : "triangular average",
                                         band.filter.taps),
                             1});
-  if (band.orders > 0)
+  if (band.named.family != NamedShape::Family::none)
+    fit.remedies.push_back({"shape",
+                            alarm,
+                            fmt::format("the spectrum is that of {}", named_shape_text(band.named)),
+                            static_cast<std::uint64_t>(band.orders)});
+  else if (band.orders > 0)
     fit.remedies.push_back(
         {"shape",
          alarm,

@@ -25,13 +25,13 @@ namespace libchar {
 namespace {
 
 constexpr double kScale = 1.4;  ///< of the prior, in standard deviations of the shape
-struct Family {
+struct Order {
   int power;
   double weight;
 };
 /// Most sensors roll off from the first order on; the steeper, the later. Noise that rises does so as quantization noise does: the
 /// steeper families only fall.
-constexpr std::array<Family, 3> kFamilies = {{{1, 0.75}, {2, 0.15}, {4, 0.1}}};
+constexpr std::array<Order, 3> kOrders = {{{1, 0.75}, {2, 0.15}, {4, 0.1}}};
 constexpr double kTaken =
     1;  ///< standard deviations from which on the shape is a part of the model
 
@@ -125,7 +125,7 @@ struct Answer {
   Eigen::VectorXd slope;  ///< d ln theta / d amplitude, of Slopes::terms
 };
 
-Answer answer_of(const Slopes& slopes, const Eigen::VectorXd& shape, const Family& family) {
+Answer answer_of(const Slopes& slopes, const Eigen::VectorXd& shape, const Order& family) {
   constexpr double kApart = 1e-6;  ///< of the shape's length that the terms leave over
   Answer out;
   const Eigen::VectorXd inside = pivoted_least_squares(slopes.columns, shape).x;
@@ -139,7 +139,7 @@ Answer answer_of(const Slopes& slopes, const Eigen::VectorXd& shape, const Famil
   return out;
 }
 
-using Answers = std::array<Answer, kFamilies.size()>;
+using Answers = std::array<Answer, kOrders.size()>;
 
 Answers answers_of(const Slopes& slopes,
                    const std::vector<PowerBin>& inside,
@@ -147,15 +147,15 @@ Answers answers_of(const Slopes& slopes,
                    double rate_hz) {
   Answers out;
   double total = 0;
-  for (std::size_t f = 0; f < kFamilies.size(); ++f) {
+  for (std::size_t f = 0; f < kOrders.size(); ++f) {
     // Quantization noise and the corner of a low-pass are that of first order.
-    if (kFamilies[f].power == 1 && (band.quantized || band.low_pass)) continue;
+    if (kOrders[f].power == 1 && (band.quantized || band.low_pass)) continue;
     Eigen::VectorXd shape(slopes.root.size());
     for (Eigen::Index j = 0; j < shape.size(); ++j)
-      shape[j] = slopes.root[j] * small_shape_log_gain({kFamilies[f].power, 1},
-                                                       inside[static_cast<std::size_t>(j)],
-                                                       rate_hz);
-    out[f] = answer_of(slopes, shape, kFamilies[f]);
+      shape[j] =
+          slopes.root[j] *
+          small_shape_log_gain({kOrders[f].power, 1}, inside[static_cast<std::size_t>(j)], rate_hz);
+    out[f] = answer_of(slopes, shape, kOrders[f]);
     total += out[f].weight;
   }
   for (Answer& answer : out) answer.weight = total > 0 ? answer.weight / total : 0;
@@ -200,7 +200,7 @@ double take_small_shape(const std::vector<PowerBin>& bins,
         });
     if (!(best->weight > 0) || !(std::abs(best->posterior.mean) > kTaken)) return taken;
     Band with = band;
-    with.small = {kFamilies[static_cast<std::size_t>(best - answers.begin())].power,
+    with.small = {kOrders[static_cast<std::size_t>(best - answers.begin())].power,
                   best->posterior.mean * best->sd};
     if (with.low_pass) {
       with.low_pass.reset();

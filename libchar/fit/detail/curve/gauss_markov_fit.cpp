@@ -49,7 +49,7 @@ class AtTau {
     for (std::size_t j = 0; j < bins.size(); ++j)
       if (band.inside[j] != 0) inside_.push_back(bins[j]);
     const std::vector<PowerBin> filtered = bins_of(bins, without, rate_hz);
-    problem_ = bin_problem(filtered, band.orders, band.top_hz);
+    problem_ = band_problem(bins, without, rate_hz);
     for (std::size_t j = 0; j < inside_.size(); ++j)
       gain_.push_back(filtered[j].unit[0] / inside_[j].unit[0]);
   }

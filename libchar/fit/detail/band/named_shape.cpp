@@ -1,0 +1,285 @@
+// The power gain of a digital filter of low order is a ratio of polynomials in s = sin²(pi f / rate), exactly. Beside a polynomial of
+// ln |H|² over the whole band it has the few parameters that such a filter has, and leaves the slow end of the spectrum to the terms.
+// Its unknowns p are found by Fisher scoring of terms and shape together: the shape is a straight line in p at each step,
+//   ln |H(p + d)|² ~ ln |H(p)|² + d' (d ln |H|² / dp),
+// with the step halved until the likelihood rises.
+#include "libchar/fit/detail/band/named_shape.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
+#include "libchar/fit/detail/band/scoring.hpp"
+
+namespace libchar {
+namespace {
+
+double square_at(double frequency_hz, double rate_hz) {
+  const double sine = std::sin(std::numbers::pi * std::min(frequency_hz / rate_hz, 0.5));
+  return sine * sine;
+}
+
+/// s of a corner: beyond the rate's reach it goes on as f².
+double square_of_corner(double corner_hz, double rate_hz) {
+  const double x = std::numbers::pi * corner_hz / rate_hz;
+  return x < 1 ? std::sin(x) * std::sin(x) : std::sin(1.0) * std::sin(1.0) * x * x;
+}
+double corner_of_square(double square, double rate_hz) {
+  const double sine = std::sqrt(square);
+  const double x = sine < std::sin(1.0) ? std::asin(sine) : sine / std::sin(1.0);
+  return x * rate_hz / std::numbers::pi;
+}
+
+struct Unknowns {
+  NamedShape::Family family = NamedShape::Family::none;
+  std::array<double, 4> x{};  ///< ln s_p, ln zeta, ln s_z, tilt
+};
+
+Unknowns unknowns(const NamedShape& shape, double rate_hz) {
+  return {shape.family,
+          {std::log(square_of_corner(shape.pole_hz, rate_hz)),
+           std::log(shape.damping),
+           shape.zero_hz > 0 ? std::log(square_of_corner(shape.zero_hz, rate_hz)) : 0,
+           shape.tilt}};
+}
+NamedShape shape_of(const Unknowns& u, double rate_hz) {
+  NamedShape shape;
+  shape.family = u.family;
+  shape.pole_hz = corner_of_square(std::exp(u.x[0]), rate_hz);
+  shape.damping = u.family == NamedShape::Family::shelf ? 1 : std::exp(u.x[1]);
+  shape.zero_hz = u.family == NamedShape::Family::second_order
+                      ? 0
+                      : corner_of_square(std::exp(u.x[2]), rate_hz);
+  return shape;
+}
+
+struct LogGain {
+  double value = 0;
+  std::array<double, 4> slope{};
+};
+
+/// Where in a bin the gain is taken: s and ln(1 - s).
+struct Nodes {
+  static constexpr std::size_t kCount = 3;
+  std::array<double, kCount> s{}, nyquist{};
+};
+
+Nodes nodes_of(const PowerBin& bin, double rate_hz) {
+  Nodes out;
+  for (std::size_t i = 0; i < Nodes::kCount; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / Nodes::kCount;
+    out.s[i] = square_at(bin.low_hz + (bin.high_hz - bin.low_hz) * share, rate_hz);
+    out.nyquist[i] = std::log1p(-std::min(out.s[i], 1 - 1e-9));
+  }
+  return out;
+}
+
+/// A shape whose constants are computed.
+class Gain {
+ public:
+  explicit Gain(const Unknowns& u)
+      : family_(u.family),
+        pole_(std::exp(u.x[0])),
+        damped_(4 * std::exp(2 * u.x[1])),
+        zero_(std::exp(u.x[2])),
+        tilt_(u.x[3]) {}
+
+  /// Of the mean gain over the bin, slopes as means of those of the log.
+  LogGain operator()(const Nodes& nodes) const {
+    LogGain out;
+    double sum = 0;
+    for (std::size_t i = 0; i < Nodes::kCount; ++i) sum += at(nodes.s[i], nodes.nyquist[i], out);
+    out.value = std::log(sum / Nodes::kCount);
+    for (double& slope : out.slope) slope /= Nodes::kCount;
+    return out;
+  }
+
+ private:
+  double at(double s, double nyquist, LogGain& out) const {
+    const double x = s / pole_;
+    double below = 1 + x;
+    if (family_ == NamedShape::Family::shelf) {
+      out.slope[0] += x / below;
+    } else {
+      below = (1 - x) * (1 - x) + damped_ * x;
+      out.slope[0] += x * (damped_ - 2 * (1 - x)) / below;
+      out.slope[1] -= 2 * damped_ * x / below;
+    }
+    double gain = 1 / below;
+    if (family_ != NamedShape::Family::second_order) {
+      const double z = s / zero_;
+      gain *= 1 + z;
+      out.slope[2] -= z / (1 + z);
+    }
+    // Filters made by the bilinear transform have zeros at half the rate: |H|² ~ (1 - s)^c, c = 1, 2.
+    out.slope[3] += nyquist;
+    return tilt_ == 0 ? gain : gain * std::exp(tilt_ * nyquist);
+  }
+
+  NamedShape::Family family_;
+  double pole_, damped_, zero_, tilt_;
+};
+
+LogGain log_gain_of(const Unknowns& u, const PowerBin& bin, double rate_hz) {
+  return Gain(u)(nodes_of(bin, rate_hz));
+}
+
+/// Which of the three unknowns a family has.
+std::vector<std::size_t> free_of(NamedShape::Family family) {
+  if (family == NamedShape::Family::shelf) return {0, 2, 3};
+  if (family == NamedShape::Family::second_order) return {0, 1, 3};
+  return {0, 1, 2, 3};
+}
+
+class Fit {
+ public:
+  Fit(const std::vector<PowerBin>& inside, double rate_hz, const TermSet& terms)
+      : plain_(bin_problem(inside)), terms_(terms) {
+    for (const PowerBin& bin : inside) nodes_.push_back(nodes_of(bin, rate_hz));
+  }
+
+  double deviance(const Unknowns& u) const {
+    return score(problem(u), terms_, nullptr, kCoarse).half_deviance;
+  }
+
+  /// A straight line in the unknowns, to its maximum; false where the likelihood does not rise.
+  bool step(Unknowns& u, double& value) const {
+    const std::vector<std::size_t> free = free_of(u.family);
+    BinProblem line = problem(u);
+    const Eigen::ArrayXd root = (line.dof / 2).sqrt();
+    Eigen::MatrixXd slopes(line.size(), static_cast<Eigen::Index>(free.size()));
+    const Gain gain_at(u);
+    for (Eigen::Index j = 0; j < line.size(); ++j) {
+      const LogGain at = gain_at(nodes_[static_cast<std::size_t>(j)]);
+      for (std::size_t k = 0; k < free.size(); ++k)
+        slopes(j, static_cast<Eigen::Index>(k)) = root[j] * at.slope[free[k]];
+    }
+    line.shape = thin_qr(slopes).q.array().colwise() / root;
+    const ScoringResult best = score(line, terms_, nullptr, kCoarse);
+    Eigen::VectorXd gain = Eigen::VectorXd::Zero(line.size());
+    for (Eigen::Index k = 0; k < line.shapes(); ++k)
+      gain += best.at.shape[static_cast<std::size_t>(k)] * (line.shape.col(k) * root).matrix();
+    const Eigen::VectorXd change = pivoted_least_squares(slopes, gain).x;
+    if (!change.allFinite()) return false;
+    double length = std::min(1.0, kLongest / std::max(change.cwiseAbs().maxCoeff(), 1e-300));
+    for (int half = 0; half < kHalvings; ++half, length /= 2) {
+      Unknowns next = u;
+      for (std::size_t k = 0; k < free.size(); ++k)
+        next.x[free[k]] += length * change[static_cast<Eigen::Index>(k)];
+      const double there = deviance(next);
+      if (!(there < value)) continue;
+      const bool goes_on = value - there > kEnough;
+      u = next;
+      value = there;
+      return goes_on;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr double kCoarse = 1e-7, kEnough = 0.02, kLongest = 0.7;
+  static constexpr int kHalvings = 4;
+
+  BinProblem problem(const Unknowns& u) const {
+    BinProblem out = plain_;
+    const Gain gain(u);
+    for (Eigen::Index j = 0; j < out.size(); ++j)
+      out.unit.row(j) *= std::exp(gain(nodes_[static_cast<std::size_t>(j)]).value);
+    return out;
+  }
+
+  BinProblem plain_;
+  std::vector<Nodes> nodes_;
+  const TermSet& terms_;
+};
+
+/// Corners a factor of two apart, two dampings, zeros on both sides of the pole.
+std::vector<Unknowns> grid(NamedShape::Family family,
+                           const std::vector<PowerBin>& inside,
+                           double rate_hz) {
+  constexpr double kWidest = 128, kApart = 4;
+  std::vector<Unknowns> out;
+  double top = 0;
+  for (const PowerBin& bin : inside) top = std::max(top, square_at(bin.high_hz, rate_hz));
+  const std::vector<double> dampings =
+      family == NamedShape::Family::shelf ? std::vector<double>{1} : std::vector<double>{0.4, 1};
+  const std::vector<double> zeros =
+      family == NamedShape::Family::second_order ? std::vector<double>{1}
+      : family == NamedShape::Family::shelf      ? std::vector<double>{0.6, 1.7}
+                                                 : std::vector<double>{0.2, 2};
+  for (double square = top; square > top / (kWidest * kWidest); square /= kApart)
+    for (const double damping : dampings)
+      for (const double zero : zeros)
+        out.push_back({family, {std::log(square), std::log(damping), std::log(square * zero), 0}});
+  return out;
+}
+
+}  // namespace
+
+std::size_t unknowns_of(NamedShape::Family family) {
+  return family == NamedShape::Family::none ? 0 : free_of(family).size();
+}
+
+double named_log_gain(const NamedShape& shape, const PowerBin& bin, double rate_hz) {
+  if (shape.family == NamedShape::Family::none) return 0;
+  return log_gain_of(unknowns(shape, rate_hz), bin, rate_hz).value;
+}
+
+std::array<double, 4> named_log_slopes(const NamedShape& shape,
+                                       const PowerBin& bin,
+                                       double rate_hz) {
+  const LogGain at = log_gain_of(unknowns(shape, rate_hz), bin, rate_hz);
+  std::array<double, 4> out{};
+  const std::vector<std::size_t> free = free_of(shape.family);
+  for (std::size_t k = 0; k < free.size(); ++k) out[k] = at.slope[free[k]];
+  return out;
+}
+
+std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
+                                          double rate_hz,
+                                          const TermSet& terms,
+                                          NamedShape::Family family,
+                                          const std::optional<NamedShape>& start) {
+  const int steps = start ? 4 : 12;  // the next, narrower band goes on from here
+  const Fit fit(inside, rate_hz, terms);
+  Unknowns best;
+  double value = std::numeric_limits<double>::infinity();
+  const std::vector<Unknowns> starts =
+      start ? std::vector<Unknowns>{unknowns(*start, rate_hz)} : grid(family, inside, rate_hz);
+  for (const Unknowns& at : starts) {
+    const double there = fit.deviance(at);
+    if (!(there < value)) continue;
+    value = there;
+    best = at;
+  }
+  if (!std::isfinite(value)) return std::nullopt;
+  for (int i = 0; i < steps && fit.step(best, value); ++i) {
+  }
+  const NamedShape shape = shape_of(best, rate_hz);
+  if (!std::isfinite(shape.pole_hz) || !std::isfinite(shape.damping) ||
+      !std::isfinite(shape.zero_hz))
+    return std::nullopt;
+  return shape;
+}
+
+std::string named_shape_text(const NamedShape& shape) {
+  if (shape.family == NamedShape::Family::shelf)
+    return fmt::format("a shelf, {} times between {} Hz and {} Hz",
+                       brief_text(shape.pole_hz / shape.zero_hz, 3),
+                       brief_text(std::min(shape.pole_hz, shape.zero_hz), 3),
+                       brief_text(std::max(shape.pole_hz, shape.zero_hz), 3));
+  std::string text = fmt::format("a second-order low-pass at {} Hz, damping {}",
+                                 brief_text(shape.pole_hz, 3),
+                                 brief_text(shape.damping, 2));
+  if (shape.family == NamedShape::Family::loop)
+    text += fmt::format(", with a zero at {} Hz", brief_text(shape.zero_hz, 3));
+  return text;
+}
+
+}  // namespace libchar

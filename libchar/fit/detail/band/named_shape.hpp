@@ -1,0 +1,46 @@
+#pragma once
+// Shapes of a spectrum that a filter or a control loop with a low corner gives it, by their corners.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/record/power_bins.hpp"
+
+namespace libchar {
+
+/// |H|² = (1 + s/s_z) (1 - s)^c / D,  s = sin²(pi f / rate), with c for zeros at half the rate and what another filter does far above:
+///   shelf:        D = 1 + s/s_p                           (one pole, one zero)
+///   second_order: D = (1 - s/s_p)² + 4 zeta² s/s_p, no zero
+///   loop:         the same with the zero                  (alpha-beta trackers, closed loops)
+struct NamedShape {
+  enum class Family { none, shelf, second_order, loop };
+  Family family = Family::none;
+  double pole_hz = 0, zero_hz = 0;  ///< corners; above half the rate where the slope begins there
+  double damping = 1;
+  double tilt = 0;  ///< c
+  bool operator==(const NamedShape&) const = default;
+};
+
+/// Unknowns of a family: ln s_p, then ln zeta, then ln s_z, then c.
+std::size_t unknowns_of(NamedShape::Family family);
+/// ln |H|², a mean over the bin.
+double named_log_gain(const NamedShape& shape, const PowerBin& bin, double rate_hz);
+/// Its derivatives by the unknowns.
+std::array<double, 4> named_log_slopes(const NamedShape& shape,
+                                       const PowerBin& bin,
+                                       double rate_hz);
+
+/// The likeliest shape of a family with all `terms` free; from the best of a grid where there is no start.
+std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
+                                          double rate_hz,
+                                          const TermSet& terms,
+                                          NamedShape::Family family,
+                                          const std::optional<NamedShape>& start = {});
+
+/// "a second-order low-pass at 1.02 Hz, damping 0.71".
+std::string named_shape_text(const NamedShape& shape);
+
+}  // namespace libchar
