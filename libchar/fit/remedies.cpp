@@ -44,6 +44,7 @@ SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count)
         fmt::format("kurtosis of differences {} > {}", brief_text(kurtosis), brief_text(alarm)),
         fmt::format("{} sample{} left out", count.left_out, count.left_out == 1 ? "" : "s"),
         count.left_out};
+  answer.outliers = outlier_variance(answer.remedy ? count.without : count.with);
   return answer;
 }
 

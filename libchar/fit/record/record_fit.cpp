@@ -52,6 +52,32 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
                     brief_text(wider, 2))));
 }
 
+/// Outliers that are too small to be left out one by one are white noise to a spectrum: their variance is taken out of N².
+void take_out_outliers(const std::optional<OutlierVariance>& outliers,
+                       double rate_hz,
+                       NoiseFit& fit) {
+  constexpr auto kWhite = static_cast<std::size_t>(Term::white);
+  Coefficient& white = fit.term[kWhite];
+  if (!outliers || !white.value) return;
+  const double square = *white.value * *white.value, theirs = outliers->variance / rate_hz;
+  if (!(theirs < square)) return;
+  const double core = std::sqrt(square - theirs), share = core / *white.value;
+  const double more = outliers->sd / rate_hz / (2 * core * core);
+  const double wider = std::hypot(1.0, more / white.relative_sd);
+  white.ci95 = {core * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider),
+                core * std::pow(white.ci95.high / *white.value, wider)};
+  white.relative_sd *= wider;
+  fit.covariance[kWhite][kWhite] += 4 * more * more;
+  fit.theta[kWhite] *= share * share;
+  fit.findings.push_back(
+      finding("outliers_in_n",
+              fmt::format("Outliers too small to be left out one by one add {} to N: N is that of "
+                          "the Gaussian core of the samples.",
+                          percent_text(1 / share - 1)),
+              "small outliers were taken out of N"));
+  white.value = core;
+}
+
 constexpr std::uint64_t kMeansOfPoint = 8;  ///< from which on terms of a pyramid start often enough
 constexpr double kMostOfEvents = 0.2;       ///< share of a point's variance
 
@@ -164,6 +190,7 @@ NoiseFit fit_whole(std::span<const double> record,
     widen_for_tails(
         counted ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
   }
+  take_out_outliers(despiked.answer.outliers, rate_hz, fit);
   report_means(means, options, fit);
   add_spike_answer(despiked.answer, fit);
   if (options.remedies && options.stationarity) {
@@ -199,6 +226,7 @@ NoiseFit fit_sums(RecordSums sums,
   // known.
   if (!options.clock && options.difference_kurtosis && !cleaned && !has_step(events))
     widen_for_tails(*options.difference_kurtosis, samples, fit);
+  take_out_outliers(answer.outliers, rate_hz, fit);
   report_means(means, options, fit);
   add_spike_answer(answer, fit);
   if (options.remedies && options.stationarity) {

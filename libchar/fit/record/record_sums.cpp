@@ -173,6 +173,7 @@ FittedSums read_fitted(StateReader& from) {
 template <class Archive, class Count>
 void spikes_layout(Archive& at, Count& n) {
   at(n.samples, n.left_out, n.spikes, n.shoulder, n.steps, n.crowded, n.log_size);
+  for (auto* sums : {&n.with, &n.without}) at(sums->count, sums->all, sums->near, sums->far);
 }
 
 struct RecordStage {

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
@@ -110,6 +111,67 @@ SpikeVerdict judge_spikes(const SpikeCount& count) {
   return binomial_cdf(static_cast<double>(count.shoulder), events, kTailShoulder) < kShoulderAlarm
              ? SpikeVerdict::spikes
              : SpikeVerdict::heavy_tails;
+}
+
+namespace {
+
+/// Scale² of a Gaussian core: the mean square within `reach` standard deviations over what a Gaussian has there,
+/// 1 - 2 c phi(c) / (2 Phi(c) - 1), repeated with its own result (a one-step trimmed estimate that converges).
+double core_square(std::span<const double> magnitude, double start, double reach) {
+  constexpr int kRounds = 8;
+  const double inside = std::erf(reach / std::numbers::sqrt2);
+  const double density = std::exp(-0.5 * reach * reach) / std::sqrt(2 * std::numbers::pi);
+  const double share = 1 - 2 * reach * density / inside;
+  double square = start;
+  for (int round = 0; round < kRounds; ++round) {
+    const double limit = reach * std::sqrt(square);
+    double sum = 0, count = 0;
+    for (const double d : magnitude) {
+      if (d > limit) continue;
+      sum += d * d;
+      count += 1;
+    }
+    if (!(count > 0)) return start;
+    square = sum / count / share;
+  }
+  return square;
+}
+
+}  // namespace
+
+CoreSums core_sums(std::span<const double> record) {
+  std::vector<double> magnitude;
+  magnitude.reserve(record.size());
+  CoreSums out;
+  for (std::size_t t = 1; t < record.size(); ++t) {
+    const double d = std::abs(record[t] - record[t - 1]);
+    if (!std::isfinite(d)) continue;
+    magnitude.push_back(d);
+    out.all += d * d;
+  }
+  out.count = static_cast<double>(magnitude.size());
+  if (magnitude.empty()) return out;
+  constexpr double kQuartile = 0.6744897501960817;
+  std::vector<double> copy = magnitude;
+  const double scale = median_in_place(copy, Middle::upper) / kQuartile;
+  if (!(scale > 0)) {  // values held or of a coarse grid: they have no core
+    out.near = out.far = out.all;
+    return out;
+  }
+  out.near = core_square(magnitude, scale * scale, CoreSums::kNear) * out.count;
+  out.far = core_square(magnitude, scale * scale, CoreSums::kFar) * out.count;
+  return out;
+}
+
+std::optional<OutlierVariance> outlier_variance(const CoreSums& sums) {
+  // Standard deviations of ln(far / all) and of ln(near / far) of Gaussian differences, times the root of their count.
+  constexpr double kAll = 1.7, kCore = 4.6, kSure = 4, kFlat = 0.01;
+  if (!(sums.count > 0) || !(sums.far > 0)) return std::nullopt;
+  const double root = std::sqrt(sums.count);
+  if (!(std::log(sums.all / sums.far) > kSure * kAll / root)) return std::nullopt;
+  if (std::abs(std::log(sums.near / sums.far)) > kSure * kCore / root + kFlat) return std::nullopt;
+  return OutlierVariance{(sums.all - sums.far) / sums.count / 2,
+                         kAll * sums.far / sums.count / 2 / root};
 }
 
 std::string spike_sentence(const SpikeCount& count) {
@@ -302,6 +364,8 @@ std::vector<double> cleaned_record(std::span<const double> record, SpikeCount& c
     keep(cleaner.push(record.subspan(from, std::min(kPiece, record.size() - from))));
   keep(cleaner.finish());
   count = cleaner.count();
+  count.with = core_sums(record);
+  count.without = count.left_out > 0 ? core_sums(cleaned) : count.with;
   return cleaned;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,24 @@ class SpikeScan {
   std::vector<double> residual_, step_;
 };
 
+/// Sums of squared first differences: of all, and what they would be if the whole distribution were Gaussian like its core, the
+/// scale taken from the differences within `kNear` and within `kFar` standard deviations of it.
+struct CoreSums {
+  static constexpr double kNear = 1.2, kFar = 2.2;
+  double count = 0, all = 0, near = 0, far = 0;
+  bool operator==(const CoreSums&) const = default;
+};
+
+/// Of the differences between neighbours that are both present.
+CoreSums core_sums(std::span<const double> record);
+
+/// Variance per sample that outliers add to a record of Gaussian noise: half of what the differences have beyond their core, with its
+/// standard deviation. Where the core itself is not Gaussian they are the noise's own tails: none.
+struct OutlierVariance {
+  double variance = 0, sd = 0;
+};
+std::optional<OutlierVariance> outlier_variance(const CoreSums& sums);
+
 /// What was found in a record.
 struct SpikeCount {
   std::uint64_t samples = 0;   ///< not missing
@@ -42,6 +61,7 @@ struct SpikeCount {
   std::uint64_t steps = 0;     ///< jumps that are no run: the level does not come back
   std::uint64_t crowded = 0;   ///< beyond six, but among too many others: a loud stretch
   double log_size = 0;         ///< sum of ln(size / 5 sd) over `spikes` and `shoulder`
+  CoreSums with, without;      ///< of the record as it is, and without the spikes
 };
 
 enum class SpikeVerdict {
