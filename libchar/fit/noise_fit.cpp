@@ -24,6 +24,7 @@
 #include "libchar/fit/detail/band/small_shape.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/gauss_markov_fit.hpp"
+#include "libchar/fit/detail/curve/power_law.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/detail/record/record_means.hpp"
 #include "libchar/fit/record/power_bins.hpp"
@@ -36,7 +37,9 @@ namespace {
 constexpr double kMisfit =
     1e-3;  ///< probability of the residuals below which the terms do not describe them
 constexpr double kRampRatio = 5.41;  ///< the same for a ramp: passed by 0.5 % of clean records
-constexpr std::size_t kLowest = 5;   ///< coefficients that a warm-up or a drift falls into
+constexpr double kProcessWorth =
+    6;  ///< of 2 lnL that a Gauss-Markov process must have before a power law
+constexpr std::size_t kLowest = 5;  ///< coefficients that a warm-up or a drift falls into
 
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kRamp = static_cast<std::size_t>(Term::ramp);
@@ -305,6 +308,12 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   if (options.remedies && options.gauss_markov && !options.clock)
     process = choose_gauss_markov(
         bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
+  std::optional<PowerLawChoice> law;
+  if (process) law = choose_power_law(bins, band, rate_hz, options.terms);
+  // The process has two parameters where the law has none beside its exponent.
+  if (law && process->needed && process->likelihood_ratio > law->likelihood_ratio + kProcessWorth)
+    law.reset();
+  if (law) process.reset();
   if (process && process->needed) band = process->band;
   Attempt now = attempt(bins, std::move(band), rate_hz, samples, options);
   if (now.band.tau_s) {  // once more at the best correlation time of the terms that stay
@@ -314,6 +323,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   if (options.remedies) {
     report_band(now.band, bins, now.fit);
     answer_low_frequencies(now);
+    if (law) answer_power_law(*law, now.fit);
     if (band_options.small_shapes && now.band.passes)
       average_over_small_shapes(
           bins, now.band, problem_of(bins, now.band, rate_hz), now.best, now.fit);

@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -115,51 +116,82 @@ SpikeVerdict judge_spikes(const SpikeCount& count) {
 
 namespace {
 
-/// Scale² of a Gaussian core: the mean square within `reach` standard deviations over what a Gaussian has there,
-/// 1 - 2 c phi(c) / (2 Phi(c) - 1), repeated with its own result (a one-step trimmed estimate that converges).
-double core_square(std::span<const double> magnitude, double start, double reach) {
-  constexpr int kRounds = 8;
-  const double inside = std::erf(reach / std::numbers::sqrt2);
-  const double density = std::exp(-0.5 * reach * reach) / std::sqrt(2 * std::numbers::pi);
-  const double share = 1 - 2 * reach * density / inside;
-  double square = start;
-  for (int round = 0; round < kRounds; ++round) {
-    const double limit = reach * std::sqrt(square);
-    double sum = 0, count = 0;
-    for (const double d : magnitude) {
-      if (d > limit) continue;
-      sum += d * d;
-      count += 1;
-    }
-    if (!(count > 0)) return start;
-    square = sum / count / share;
+/// Counts and squares of magnitudes by size, up to four scales.
+class SizeHistogram {
+ public:
+  explicit SizeHistogram(double scale) : width_(kReach * scale / kBins) {}
+  void push(double magnitude) {
+    const double place = magnitude / width_;
+    if (!(place < kBins)) return;
+    Bin& bin = bins_[static_cast<std::size_t>(place)];
+    bin.count += 1;
+    bin.square += magnitude * magnitude;
   }
-  return square;
-}
+
+  /// Scale² of a Gaussian core: the mean square within `reach` standard deviations over what a Gaussian has there,
+  /// 1 - 2 c phi(c) / (2 Phi(c) - 1), repeated with its own result.
+  double core_square(double start, double reach) const {
+    constexpr int kRounds = 8;
+    const double inside = std::erf(reach / std::numbers::sqrt2);
+    const double density = std::exp(-0.5 * reach * reach) / std::sqrt(2 * std::numbers::pi);
+    const double share = 1 - 2 * reach * density / inside;
+    double square = start;
+    for (int round = 0; round < kRounds; ++round) {
+      const Bin below = up_to(reach * std::sqrt(square));
+      if (!(below.count > 0)) return start;
+      square = below.square / below.count / share;
+    }
+    return square;
+  }
+
+ private:
+  static constexpr std::size_t kBins = 1024;
+  static constexpr double kReach = 4;
+  struct Bin {
+    double count = 0, square = 0;
+  };
+  Bin up_to(double limit) const {
+    const double place = std::min(limit / width_, static_cast<double>(kBins));
+    const auto whole = static_cast<std::size_t>(place);
+    Bin sum;
+    for (std::size_t i = 0; i < whole; ++i) {
+      sum.count += bins_[i].count;
+      sum.square += bins_[i].square;
+    }
+    if (whole == kBins) return sum;
+    const double part = place - static_cast<double>(whole);
+    return {sum.count + part * bins_[whole].count, sum.square + part * bins_[whole].square};
+  }
+
+  double width_;
+  std::array<Bin, kBins> bins_{};
+};
 
 }  // namespace
 
 CoreSums core_sums(std::span<const double> record) {
-  std::vector<double> magnitude;
-  magnitude.reserve(record.size());
+  constexpr double kQuartile = 0.6744897501960817;
+  constexpr std::size_t kForScale = std::size_t{1} << 14U;
   CoreSums out;
+  std::vector<double> some;
+  const std::size_t stride = std::max<std::size_t>(1, record.size() / kForScale);
+  for (std::size_t t = 1; t < record.size(); t += stride)
+    if (const double d = std::abs(record[t] - record[t - 1]); std::isfinite(d)) some.push_back(d);
+  const double scale = some.empty() ? 0 : median_in_place(some, Middle::upper) / kQuartile;
+  SizeHistogram sizes(scale > 0 ? scale : 1);
   for (std::size_t t = 1; t < record.size(); ++t) {
     const double d = std::abs(record[t] - record[t - 1]);
     if (!std::isfinite(d)) continue;
-    magnitude.push_back(d);
+    out.count += 1;
     out.all += d * d;
+    sizes.push(d);
   }
-  out.count = static_cast<double>(magnitude.size());
-  if (magnitude.empty()) return out;
-  constexpr double kQuartile = 0.6744897501960817;
-  std::vector<double> copy = magnitude;
-  const double scale = median_in_place(copy, Middle::upper) / kQuartile;
   if (!(scale > 0)) {  // values held or of a coarse grid: they have no core
     out.near = out.far = out.all;
     return out;
   }
-  out.near = core_square(magnitude, scale * scale, CoreSums::kNear) * out.count;
-  out.far = core_square(magnitude, scale * scale, CoreSums::kFar) * out.count;
+  out.near = sizes.core_square(scale * scale, CoreSums::kNear) * out.count;
+  out.far = sizes.core_square(scale * scale, CoreSums::kFar) * out.count;
   return out;
 }
 

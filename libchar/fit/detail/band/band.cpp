@@ -254,31 +254,47 @@ struct Search {
     }
   }
 
-  /// The widest band that passes with a filter or loop of low corner, its corner inside.
-  std::optional<Trial> widest_named(const Band& from, NamedShape::Family family) const {
-    constexpr int kCuts = 10;
+  /// `band` with the likeliest shape of a family in it; none where its corner is not seen there.
+  std::optional<Trial> named_in(Band band,
+                                NamedShape::Family family,
+                                const std::optional<NamedShape>& start,
+                                double hopeless) const {
     // A corner shows by what is beyond it; less damped it is a peak.
     constexpr double kInside = 0.5, kLow = 1.0 / 12, kDamped = 0.25;
-    Band band = from;
-    std::optional<NamedShape> shape;
+    if (members(bins, band).size() < kFewestBins) return std::nullopt;
     TermSet offered = terms;
-    offered[kLentTerm] = offered[kLentTerm] || from.tau_s;
-    for (int cut = 0; cut < kCuts; ++cut) {
-      band = cut_at(from, bins, rate_hz / 2 * std::exp2(-kBandStep * cut));
-      if (members(bins, band).size() < kFewestBins) break;
-      shape = fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, offered, family, shape);
-      if (!shape) break;
-      if (shape->pole_hz > std::min(kInside * band.top_hz, kLow * rate_hz) ||
-          shape->damping < kDamped) {
-        shape.reset();
-        continue;
-      }
-      band.named = *shape;
-      band.orders = static_cast<int>(unknowns_of(family));
-      std::optional<Trial> trial = at(band);
-      if (!trial || !trial->band.passes) continue;
-      if (!needed(*trial)) return std::nullopt;
-      return trial;
+    offered[kLentTerm] = offered[kLentTerm] || band.tau_s;
+    const auto shape =
+        fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, offered, family, start, hopeless);
+    if (!shape || shape->damping < kDamped ||
+        shape->pole_hz > std::min(kInside * band.top_hz, kLow * rate_hz))
+      return std::nullopt;
+    band.named = *shape;
+    band.orders = static_cast<int>(unknowns_of(family));
+    return at(band);
+  }
+
+  /// The widest band that passes with a filter or loop of low corner: found in the middle of the spectrum, then followed up and down.
+  std::optional<Trial> widest_named(const Band& from, NamedShape::Family family) const {
+    constexpr int kCuts = 10, kMiddle = 2;
+    const auto cut = [&](int steps) {
+      return cut_at(from, bins, rate_hz / 2 * std::exp2(-kBandStep * steps));
+    };
+    constexpr double kFar = 3000;  ///< of ln L that no step from a corner of the grid makes good
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    Band plain = cut(kMiddle);
+    plain.orders = static_cast<int>(unknowns_of(family));
+    const std::optional<Trial> rival = at(plain);
+    const std::optional<Trial> middle =
+        named_in(cut(kMiddle), family, std::nullopt, rival ? rival->half_deviance + kFar : kNever);
+    if (!middle || !needed(*middle)) return std::nullopt;
+    NamedShape shape = middle->band.named;
+    for (int steps = 0; steps < kCuts; ++steps) {
+      const std::optional<Trial> trial =
+          steps == kMiddle ? middle : named_in(cut(steps), family, shape, kNever);
+      if (!trial) continue;
+      if (trial->band.passes) return trial;
+      if (steps > kMiddle) shape = trial->band.named;
     }
     return std::nullopt;
   }
@@ -412,37 +428,67 @@ BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, dou
 
 namespace {
 
-/// The largest deviate of a score test for a shelf (ln gain = a s/(s + s_c)) with its corner at one of the octaves of the band.
-double shelf_deviate(const std::vector<PowerBin>& bins,
-                     const Band& band,
-                     double rate_hz,
-                     const TermSet& terms) {
-  constexpr int kOctaves = 8;
-  const BinProblem problem = band_problem(bins, band, rate_hz);
-  const ScoringResult best = score(problem, terms);
-  if (!std::isfinite(best.half_deviance)) return 0;
-  const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = model_of(problem, best.at);
+/// The largest deviate of score tests for a shelf, ln gain = a x / (1 + x), x = (f / f_c)², its corner at one of the octaves of the
+/// record: what rises from the slow end on is behind a high-pass.
+struct ShelfTest {
+  double largest = 0, rising = 0;
+};
+ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest_hz) {
+  constexpr double kTopOctave = 0.25, kSeen = 1e-3;
+  const BinProblem problem = band_problem(search.bins, unshaped.band, search.rate_hz);
+  const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = mixture_of(problem, unshaped.theta);
   std::vector<Eigen::Index> in;
   for (std::size_t i = 0; i < kTerms; ++i)
-    if (terms[i]) in.push_back(static_cast<Eigen::Index>(i));
+    if (search.terms[i]) in.push_back(static_cast<Eigen::Index>(i));
   Eigen::MatrixXd columns(problem.size(), static_cast<Eigen::Index>(in.size()));
   for (std::size_t i = 0; i < in.size(); ++i)
     columns.col(static_cast<Eigen::Index>(i)) = (root * problem.unit.col(in[i]) / model).matrix();
   const Eigen::MatrixXd basis = column_basis(columns);
   const Eigen::VectorXd residual = (root * (problem.energy / model - 1)).matrix();
-  double largest = 0;
-  for (int octave = 2; octave < 2 + kOctaves; ++octave) {
-    const double corner = std::exp2(-octave) * rate_hz / 2;
-    Eigen::VectorXd shape(problem.size());
-    for (Eigen::Index j = 0; j < problem.size(); ++j) {
-      const double f = bins[static_cast<std::size_t>(j)].frequency_hz / corner;
-      shape[j] = root[j] * f * f / (1 + f * f);
-    }
+  Eigen::ArrayXd square(problem.size());
+  for (Eigen::Index j = 0; j < problem.size(); ++j)
+    square[j] = std::pow(search.bins[unshaped.index[static_cast<std::size_t>(j)]].frequency_hz, 2);
+  ShelfTest out;
+  for (double corner = kTopOctave * search.rate_hz / 2; corner > 4 * slowest_hz; corner /= 2) {
+    const Eigen::VectorXd shape = (root * square / (square + corner * corner)).matrix();
     const Eigen::VectorXd apart = without_columns_of(basis, shape);
-    if (apart.norm() > 1e-3 * shape.norm())
-      largest = std::max(largest, std::abs(apart.dot(residual)) / apart.norm());
+    if (!(apart.norm() > kSeen * shape.norm())) continue;
+    const double deviate = apart.dot(residual) / apart.norm();
+    out.largest = std::max(out.largest, std::abs(deviate));
+    out.rising = std::max(out.rising, deviate);
   }
-  return largest;
+  return out;
+}
+
+/// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it.
+std::optional<Band> high_passed(const Search& search, const Trial& unshaped, double slowest_hz) {
+  constexpr double kNeeded = 14;  ///< of 2 lnL
+  const double duration_s = 0.25 / slowest_hz;
+  std::optional<Trial> best;
+  for (const NamedShape& start : high_pass_starts(search.rate_hz, duration_s)) {
+    Band band = unshaped.band;
+    band.named = start;
+    std::optional<Trial> trial = search.at(band);
+    if (trial && (!best || trial->half_deviance < best->half_deviance)) best = std::move(trial);
+  }
+  if (!best || !(2 * (unshaped.half_deviance - best->half_deviance) > kNeeded)) return std::nullopt;
+  Band band = best->band;
+  const auto shape = fit_named_shape(bins_of(search.bins, unshaped.band, search.rate_hz),
+                                     search.rate_hz,
+                                     search.terms,
+                                     NamedShape::Family::high_pass,
+                                     band.named);
+  if (!shape) return std::nullopt;
+  band.named = *shape;
+  band.orders = 1;
+  // Below, the two ends of the record hold more power than what the high-pass lets through.
+  const double corner = shape->pole_hz;
+  const double ends_hz = 2 * corner / std::sqrt(2 * std::numbers::pi * corner * duration_s);
+  for (std::size_t j = 0; j < search.bins.size(); ++j)
+    if (search.bins[j].high_hz < ends_hz) band.inside[j] = 0;
+  const std::optional<Trial> trial = search.at(band);
+  if (!trial || !trial->band.passes) return std::nullopt;
+  return trial->band;
 }
 
 Band passing_band(const std::vector<PowerBin>& bins,
@@ -454,8 +500,14 @@ Band passing_band(const std::vector<PowerBin>& bins,
   Search search{bins, rate_hz, terms, options, std::nullopt};
   const std::optional<Trial> unshaped = search.at(whole);
   if (!unshaped) return whole;
+  double slowest_hz = rate_hz / 2;
+  for (const PowerBin& bin : bins) slowest_hz = std::min(slowest_hz, std::max(bin.low_hz, 1e-300));
+  const ShelfTest shelf = shelf_test(search, *unshaped, slowest_hz);
+  if (shelf.rising > options.high_pass)
+    if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz))
+      return *falling;
   if (std::min(unshaped->band.goodness.p, unshaped->band.top.p) >= options.probability_unshaped &&
-      !(shelf_deviate(bins, whole, rate_hz, terms) > options.shelf)) {
+      !(shelf.largest > options.shelf)) {
     Band band = unshaped->band;
     band.passes = true;
     return band;

@@ -52,7 +52,9 @@ NamedShape shape_of(const Unknowns& u, double rate_hz) {
   NamedShape shape;
   shape.family = u.family;
   shape.pole_hz = corner_of_square(std::exp(u.x[0]), rate_hz);
-  shape.damping = u.family == NamedShape::Family::shelf ? 1 : std::exp(u.x[1]);
+  const bool pair =
+      u.family == NamedShape::Family::second_order || u.family == NamedShape::Family::loop;
+  shape.damping = pair ? std::exp(u.x[1]) : 1;
   shape.zero_hz = u.family == NamedShape::Family::second_order
                       ? 0
                       : corner_of_square(std::exp(u.x[2]), rate_hz);
@@ -104,6 +106,10 @@ class Gain {
   double at(double s, double nyquist, LogGain& out) const {
     const double x = s / pole_;
     double below = 1 + x;
+    if (family_ == NamedShape::Family::high_pass) {
+      out.slope[0] -= 1 / below;
+      return x / below;
+    }
     if (family_ == NamedShape::Family::shelf) {
       out.slope[0] += x / below;
     } else {
@@ -134,6 +140,7 @@ LogGain log_gain_of(const Unknowns& u, const PowerBin& bin, double rate_hz) {
 std::vector<std::size_t> free_of(NamedShape::Family family) {
   if (family == NamedShape::Family::shelf) return {0, 2, 3};
   if (family == NamedShape::Family::second_order) return {0, 1, 3};
+  if (family == NamedShape::Family::high_pass) return {0};
   return {0, 1, 2, 3};
 }
 
@@ -245,7 +252,8 @@ std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
                                           double rate_hz,
                                           const TermSet& terms,
                                           NamedShape::Family family,
-                                          const std::optional<NamedShape>& start) {
+                                          const std::optional<NamedShape>& start,
+                                          double hopeless) {
   const int steps = start ? 4 : 12;  // the next, narrower band goes on from here
   const Fit fit(inside, rate_hz, terms);
   Unknowns best;
@@ -258,7 +266,7 @@ std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
     value = there;
     best = at;
   }
-  if (!std::isfinite(value)) return std::nullopt;
+  if (!(value < hopeless)) return std::nullopt;
   for (int i = 0; i < steps && fit.step(best, value); ++i) {
   }
   const NamedShape shape = shape_of(best, rate_hz);
@@ -268,7 +276,18 @@ std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
   return shape;
 }
 
+std::vector<NamedShape> high_pass_starts(double rate_hz, double duration_s) {
+  constexpr double kFewest = 4,
+                   kHighest = 40;  ///< periods of the corner in the record; corners below the rate
+  std::vector<NamedShape> out;
+  for (double corner = kFewest / duration_s; corner < rate_hz / kHighest; corner *= 2)
+    out.push_back({NamedShape::Family::high_pass, corner, 0, 1, 0});
+  return out;
+}
+
 std::string named_shape_text(const NamedShape& shape) {
+  if (shape.family == NamedShape::Family::high_pass)
+    return fmt::format("a high-pass at {} Hz", brief_text(shape.pole_hz, 3));
   if (shape.family == NamedShape::Family::shelf)
     return fmt::format("a shelf, {} times between {} Hz and {} Hz",
                        brief_text(shape.pole_hz / shape.zero_hz, 3),

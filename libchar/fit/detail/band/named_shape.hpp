@@ -15,8 +15,9 @@ namespace libchar {
 ///   shelf:        D = 1 + s/s_p                           (one pole, one zero)
 ///   second_order: D = (1 - s/s_p)² + 4 zeta² s/s_p, no zero
 ///   loop:         the same with the zero                  (alpha-beta trackers, closed loops)
+/// and high_pass:    |H|² = (s/s_p) / (1 + s/s_p)            (AC coupling, complementary outputs)
 struct NamedShape {
-  enum class Family { none, shelf, second_order, loop };
+  enum class Family { none, shelf, second_order, loop, high_pass };
   Family family = Family::none;
   double pole_hz = 0, zero_hz = 0;  ///< corners; above half the rate where the slope begins there
   double damping = 1;
@@ -33,12 +34,17 @@ std::array<double, 4> named_log_slopes(const NamedShape& shape,
                                        const PowerBin& bin,
                                        double rate_hz);
 
-/// The likeliest shape of a family with all `terms` free; from the best of a grid where there is no start.
+/// The likeliest shape of a family with all `terms` free; from the best of a grid where there is no start, none where even that has a half
+/// deviance above `hopeless`.
 std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
                                           double rate_hz,
                                           const TermSet& terms,
                                           NamedShape::Family family,
-                                          const std::optional<NamedShape>& start = {});
+                                          const std::optional<NamedShape>& start = {},
+                                          double hopeless = 1e300);
+
+/// Corners of high-passes to start from, an octave apart.
+std::vector<NamedShape> high_pass_starts(double rate_hz, double duration_s);
 
 /// "a second-order low-pass at 1.02 Hz, damping 0.71".
 std::string named_shape_text(const NamedShape& shape);

@@ -1,0 +1,126 @@
+// Expected squares of the law between two terms: those of white noise, flicker and walk go as f^0, f^-1, f^-2, ends of the record
+// included, and their geometric means as the powers between,
+//   A_alpha = A_white^(1 - alpha) A_flicker^alpha (alpha < 1),  A_flicker^(2 - alpha) A_walk^(alpha - 1) (alpha > 1).
+// A scan of alpha, then a parabola through the least deviance; its curvature is the information on alpha.
+#include "libchar/fit/detail/curve/power_law.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/detail/band/scoring.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr auto kWhiteColumn = static_cast<Eigen::Index>(Term::white);
+constexpr auto kFlickerColumn = static_cast<Eigen::Index>(Term::flicker);
+constexpr auto kWalkColumn = static_cast<Eigen::Index>(Term::walk);
+constexpr auto kLawColumn = static_cast<Eigen::Index>(Term::ramp);
+constexpr double kLawNeeded = 8;                             ///< of 2 lnL
+constexpr double kLeastExponent = 0.5, kMostExponent = 1.9;  ///< of the exponent
+constexpr double kFromTerms = 3;  ///< standard deviations from 1 and from 2
+
+Eigen::ArrayXd column(const BinProblem& problem, double exponent) {
+  const Eigen::ArrayXd flicker = problem.unit.col(kFlickerColumn).log();
+  if (exponent < 1)
+    return ((1 - exponent) * problem.unit.col(kWhiteColumn).log() + exponent * flicker).exp();
+  return ((2 - exponent) * flicker + (exponent - 1) * problem.unit.col(kWalkColumn).log()).exp();
+}
+
+class AtExponent {
+ public:
+  explicit AtExponent(BinProblem problem) : problem_(std::move(problem)) {
+    terms_[kWhiteColumn] = terms_[kLawColumn] = true;
+  }
+  ScoringResult operator()(double exponent) {
+    problem_.unit.col(kLawColumn) = column(problem_, exponent);
+    return score(problem_, terms_, nullptr, 1e-6);
+  }
+  /// sd of ln Q² at a point, h and alpha unknown.
+  double white_log_sd(const ModelPoint& at, double exponent) {
+    constexpr double kStep = 0.01;
+    const Eigen::ArrayXd weight = (problem_.dof / 2).sqrt() / mixture_of(problem_, at.theta);
+    Eigen::MatrixXd slopes(problem_.size(), 3);
+    slopes.col(0) = (weight * at.theta[kWhiteColumn] * problem_.unit.col(kWhiteColumn)).matrix();
+    slopes.col(1) = (weight * at.theta[kLawColumn] * column(problem_, exponent)).matrix();
+    slopes.col(2) =
+        (weight * at.theta[kLawColumn] *
+         (column(problem_, exponent + kStep) - column(problem_, exponent - kStep)) / (2 * kStep))
+            .matrix();
+    if (problem_.shapes() > 0) slopes = without_columns_of(whitened_shape(problem_), slopes);
+    return std::sqrt(cholesky_inverse(slopes.transpose() * slopes)(0, 0));
+  }
+
+ private:
+  BinProblem problem_;
+  TermSet terms_{};
+};
+
+}  // namespace
+
+std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins,
+                                               const Band& band,
+                                               double rate_hz,
+                                               const TermSet& terms) {
+  constexpr int kSteps = 8;
+  if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn] ||
+      band.quantized || !band.passes)
+    return std::nullopt;
+  const BinProblem problem = band_problem(bins, band, rate_hz);
+  const double terms_alone = score(problem, terms).half_deviance;
+  AtExponent law(problem);
+  std::array<double, kSteps + 1> value{};
+  std::size_t least = 0;
+  const double step = (kMostExponent - kLeastExponent) / kSteps;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    value[i] = law(kLeastExponent + step * static_cast<double>(i)).half_deviance;
+    if (value[i] < value[least]) least = i;
+  }
+  if (least == 0 || least == kSteps || !std::isfinite(terms_alone)) return std::nullopt;
+  const double bend = value[least - 1] - 2 * value[least] + value[least + 1];
+  if (!(bend > 0)) return std::nullopt;
+  PowerLawChoice out;
+  out.exponent = kLeastExponent + step * (static_cast<double>(least) +
+                                          0.5 * (value[least - 1] - value[least + 1]) / bend);
+  out.exponent_sd = step / std::sqrt(bend);
+  const ScoringResult best = law(out.exponent);
+  out.likelihood_ratio = 2 * (terms_alone - best.half_deviance);
+  if (!(out.likelihood_ratio > kLawNeeded) || !(best.at.theta[kWhiteColumn] > 0) ||
+      !(best.at.theta[kLawColumn] > 0))
+    return std::nullopt;
+  for (const double whole : {1.0, 2.0})
+    if (std::abs(out.exponent - whole) < kFromTerms * out.exponent_sd) return std::nullopt;
+  out.white = std::sqrt(best.at.theta[kWhiteColumn]);
+  out.white_log_sd = law.white_log_sd(best.at, out.exponent);
+  return out;
+}
+
+void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {
+  Coefficient& white = fit.term[kWhiteColumn];
+  if (white.value) {
+    white.value = law.white;
+    white.relative_sd = law.white_log_sd / 2;
+    const double spread = std::exp(kNormal95 * white.relative_sd);
+    white.ci95 = {law.white / spread, law.white * spread};
+  }
+  for (const auto slow : {kFlickerColumn, kWalkColumn})
+    if (fit.term[static_cast<std::size_t>(slow)].value)
+      fit.term[static_cast<std::size_t>(slow)].status = Status::misfit;
+  fit.findings.push_back(finding(
+      "power_law",
+      fmt::format(
+          "The slow noise follows 1/f^{:.2f} (95 % interval {:.2f} to {:.2f}), which is "
+          "neither flicker nor a random walk (2 ln L {:.0f}): B and K stand in for it within "
+          "this recording and mean nothing beyond it.",
+          law.exponent,
+          law.exponent - kNormal95 * law.exponent_sd,
+          law.exponent + kNormal95 * law.exponent_sd,
+          law.likelihood_ratio),
+      fmt::format("the slow noise follows 1/f^{:.2f}, neither flicker nor walk", law.exponent)));
+}
+
+}  // namespace libchar
