@@ -63,6 +63,7 @@ TEST_CASE("heavy tails of a record of leaves are left as they are") {
   CharacterizeOptions with, without;
   with.spectrum.segment = without.spectrum.segment = 8192;
   without.fit.remedies = false;
+  with.fit.white_top = true;
   const ChannelResult a = characterize(recording, with).channels[0],
                       b = characterize(recording, without).channels[0];
   CHECK(spikes_of(a) == nullptr);

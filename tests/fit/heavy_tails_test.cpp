@@ -48,6 +48,7 @@ TEST_CASE("Gaussian noise keeps the interval of its likelihood") {
   for (double& v : y) v = gauss();
   FitOptions options;
   options.second_opinion = false;
+  options.white_top = true;
   const NoiseFit fit = fit_record(y, 100, nullptr, options);
   REQUIRE(fit[Term::white].value);
   CHECK(fit[Term::white].relative_sd == Approx(0.5 * std::sqrt(2.0 / 20000)).epsilon(0.1));
@@ -58,6 +59,7 @@ TEST_CASE("what heavy tails add is the fourth moment's: var ln theta + excess ku
   const std::vector<double> y = laplace_record(200000, 3);
   FitOptions options;
   options.second_opinion = false;
+  options.white_top = true;
   const NoiseFit fit = fit_record(y, 100, nullptr, options);
   const double n = 200000;
   CHECK(fit.covariance[0][0] == Approx((2 + 3) / n).epsilon(0.1));

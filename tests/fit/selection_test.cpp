@@ -81,6 +81,7 @@ TEST_CASE("where all terms are reported the model of all terms is that of the re
   const std::vector<double> y = source.record(1, 0.4, 0.05);
   FitOptions options;
   options.second_opinion = false;
+  options.white_top = true;
   const NoiseFit fit = fit_power_bins(power_bins(y, 1), 1, n, nullptr, options);
   for (const Term term : {Term::white, Term::flicker, Term::walk}) {
     CHECK(fit[term].status == Status::detected);

@@ -299,13 +299,17 @@ struct Search {
     return std::nullopt;
   }
 
-  /// Not where a polynomial of as many coefficients explains the same band as well.
+  /// Not where a polynomial of as many coefficients explains the same band as well, and not where no shape at all could by chance: a
+  /// shape leaves white noise ten times less well known.
   bool needed(const Trial& named) const {
-    constexpr double kWorth = 1;  ///< of ln L
+    constexpr double kWorth = 1, kBeyondChance = 9;  ///< of ln L
     Band plain = named.band;
     plain.named = {};
-    const std::optional<Trial> trial = at(plain);
-    return !trial || trial->half_deviance - named.half_deviance > kWorth;
+    const std::optional<Trial> polynomial = at(plain);
+    plain.orders = 0;
+    const std::optional<Trial> none = at(plain);
+    return (!polynomial || polynomial->half_deviance - named.half_deviance > kWorth) &&
+           (!none || none->half_deviance - named.half_deviance > kBeyondChance);
   }
 
   /// The same over all families: the widest, then the fewest unknowns, then the likeliest.
@@ -439,7 +443,8 @@ ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest
   const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = mixture_of(problem, unshaped.theta);
   std::vector<Eigen::Index> in;
   for (std::size_t i = 0; i < kTerms; ++i)
-    if (search.terms[i]) in.push_back(static_cast<Eigen::Index>(i));
+    // One at zero would take its own opposite for the slope of a high-pass.
+    if (unshaped.theta[i] > 0) in.push_back(static_cast<Eigen::Index>(i));
   Eigen::MatrixXd columns(problem.size(), static_cast<Eigen::Index>(in.size()));
   for (std::size_t i = 0; i < in.size(); ++i)
     columns.col(static_cast<Eigen::Index>(i)) = (root * problem.unit.col(in[i]) / model).matrix();
@@ -462,25 +467,38 @@ ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest
 
 /// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it.
 std::optional<Band> high_passed(const Search& search, const Trial& unshaped, double slowest_hz) {
-  constexpr double kNeeded = 14;  ///< of 2 lnL
+  constexpr double kNeeded = 14;   ///< of 2 lnL
+  constexpr double kPeriods = 12;  ///< of the corner in the record: below, a drift looks like that
   const double duration_s = 0.25 / slowest_hz;
-  std::optional<Trial> best;
+  Band band = unshaped.band;
+  NamedShape best;
+  double least = unshaped.half_deviance - kNeeded / 2;
   for (const NamedShape& start : high_pass_starts(search.rate_hz, duration_s)) {
-    Band band = unshaped.band;
     band.named = start;
-    std::optional<Trial> trial = search.at(band);
-    if (trial && (!best || trial->half_deviance < best->half_deviance)) best = std::move(trial);
+    const BinProblem problem = bin_problem(bins_of(search.bins, band, search.rate_hz));
+    const double value = score(problem, search.terms, nullptr, 1e-6).half_deviance;
+    if (!(value < least)) continue;
+    least = value;
+    best = start;
   }
-  if (!best || !(2 * (unshaped.half_deviance - best->half_deviance) > kNeeded)) return std::nullopt;
-  Band band = best->band;
+  if (best.family == NamedShape::Family::none) return std::nullopt;
   const auto shape = fit_named_shape(bins_of(search.bins, unshaped.band, search.rate_hz),
                                      search.rate_hz,
                                      search.terms,
                                      NamedShape::Family::high_pass,
-                                     band.named);
-  if (!shape) return std::nullopt;
+                                     best);
+  if (!shape || !(shape->pole_hz * duration_s > kPeriods)) return std::nullopt;
   band.named = *shape;
   band.orders = 1;
+  // A walk behind a high-pass is a Gauss-Markov process: that has its own search.
+  constexpr double kAsGood = 3;  ///< of ln L
+  Band process = unshaped.band;
+  process.tau_s = 1 / (2 * std::numbers::pi * shape->pole_hz);
+  TermSet offered = search.terms;
+  offered[kLentTerm] = true;
+  if (score(bin_problem(bins_of(search.bins, process, search.rate_hz)), offered).half_deviance <
+      least + kAsGood)
+    return std::nullopt;
   // Below, the two ends of the record hold more power than what the high-pass lets through.
   const double corner = shape->pole_hz;
   const double ends_hz = 2 * corner / std::sqrt(2 * std::numbers::pi * corner * duration_s);
@@ -575,12 +593,15 @@ Band find_band(const std::vector<PowerBin>& bins,
                const TermSet& terms,
                const BandOptions& options) {
   Band band = passing_band(bins, rate_hz, terms, options);
-  if (!options.small_shapes || !band.passes || band.orders > 0) return band;
+  if (!options.small_shapes || !band.passes || band.orders > 0 || count_of(terms) == 0 ||
+      members(bins, band).size() < kFewestBins)
+    return band;
   TermSet offered = terms;
   offered[kQuantizationTerm] = offered[kQuantizationTerm] || band.quantized;
   offered[kLentTerm] = offered[kLentTerm] || band.tau_s;
   const Band plain = band;
-  if (take_small_shape(bins, rate_hz, offered, band) < options.seen) return band;
+  band.small.seen = !(take_small_shape(bins, rate_hz, offered, band) < options.seen);
+  if (!band.small.seen) return band;
   return named_instead(bins, rate_hz, offered, plain, band);
 }
 

@@ -90,6 +90,8 @@ void describe_band(const std::vector<PowerBin>& bins,
   const std::vector<PowerBin> all = bins_of(bins, everywhere, rate_hz);
   const Eigen::ArrayXd gain = shape_of(problem, best.shape);
   fit.residuals = residuals_of(all, best.theta, rate_hz);
+  Band shown = band;
+  if (!shown.small.seen) shown.small = {};
   std::vector<ShapePoint> points;
   Eigen::Index inside = 0;
   for (std::size_t j = 0; j < bins.size(); ++j) {
@@ -98,12 +100,12 @@ void describe_band(const std::vector<PowerBin>& bins,
     const bool slow = bins[j].high_hz <= band.top_hz && !residual.inside && bins[j].dof <= 1;
     if (residual.inside) {
       const double ratio = gain[inside++];
-      const double known = std::exp(band_log_gain(band, bins[j], rate_hz));
+      const double known = std::exp(band_log_gain(shown, bins[j], rate_hz));
       points.push_back({residual.frequency_hz, ratio * known, residual.dof});
       residual.model *= ratio;
       residual.z = normal_deviate(residual.measured / residual.model, residual.dof);
     } else if (!slow) {
-      const double known = std::exp(band_log_gain(band, bins[j], rate_hz));
+      const double known = std::exp(band_log_gain(shown, bins[j], rate_hz));
       points.push_back(
           {residual.frequency_hz, known * residual.measured / residual.model, residual.dof});
     }

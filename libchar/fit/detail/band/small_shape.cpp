@@ -27,11 +27,10 @@ namespace {
 constexpr double kScale = 1.4;  ///< of the prior, in standard deviations of the shape
 struct Order {
   int power;
-  double weight;
+  double falling, rising;  ///< prior weights of a shape that falls, that rises
 };
-/// Most sensors roll off from the first order on; the steeper, the later. Noise that rises does so as quantization noise does: the
-/// steeper families only fall.
-constexpr std::array<Order, 3> kOrders = {{{1, 0.75}, {2, 0.15}, {4, 0.1}}};
+/// Most sensors roll off from the first order on; the steeper, the later. Noise that rises does so as quantization noise does.
+constexpr std::array<Order, 3> kOrders = {{{1, 0.75, 0.9}, {2, 0.15, 0.07}, {4, 0.1, 0.03}}};
 constexpr double kTaken =
     1;  ///< standard deviations from which on the shape is a part of the model
 
@@ -51,18 +50,15 @@ struct Posterior {
   double mean = 0, square = 0;  ///< of the shape in its standard deviations
 };
 
-Posterior posterior_of(double z, bool falls) {
+Posterior posterior_of(double z) {
   constexpr double kReach = 8, kStep = 0.05;
   Posterior out;
   for (double d = z - kReach; d < z + kReach; d += kStep) {
-    if (falls && d > 0) break;
-    const double weight =
-        (falls ? 2 : 1) * std::exp(-0.5 * (z - d) * (z - d)) / (1 + d * d / (kScale * kScale));
+    const double weight = std::exp(-0.5 * (z - d) * (z - d)) / (1 + d * d / (kScale * kScale));
     out.marginal += weight;
     out.mean += weight * d;
     out.square += weight * d * d;
   }
-  if (!(out.marginal > 0)) return out;
   out.mean /= out.marginal;
   out.square /= out.marginal;
   return out;
@@ -132,9 +128,9 @@ Answer answer_of(const Slopes& slopes, const Eigen::VectorXd& shape, const Order
   const Eigen::VectorXd apart = shape - slopes.columns * inside;
   if (!(apart.norm() > kApart * shape.norm())) return out;
   out.sd = 1 / apart.norm();
-  out.posterior =
-      posterior_of(apart.dot(slopes.residual + slopes.taken) * out.sd, family.power > 1);
-  out.weight = family.weight * out.posterior.marginal;
+  const double z = apart.dot(slopes.residual + slopes.taken) * out.sd;
+  out.posterior = posterior_of(z);
+  out.weight = (z < 0 ? family.falling : family.rising) * out.posterior.marginal;
   out.slope = -inside.head(static_cast<Eigen::Index>(slopes.terms.size()));
   return out;
 }
@@ -152,9 +148,9 @@ Answers answers_of(const Slopes& slopes,
     if (kOrders[f].power == 1 && (band.quantized || band.low_pass)) continue;
     Eigen::VectorXd shape(slopes.root.size());
     for (Eigen::Index j = 0; j < shape.size(); ++j)
-      shape[j] =
-          slopes.root[j] *
-          small_shape_log_gain({kOrders[f].power, 1}, inside[static_cast<std::size_t>(j)], rate_hz);
+      shape[j] = slopes.root[j] * small_shape_log_gain({kOrders[f].power, 1, false},
+                                                       inside[static_cast<std::size_t>(j)],
+                                                       rate_hz);
     out[f] = answer_of(slopes, shape, kOrders[f]);
     total += out[f].weight;
   }
@@ -201,7 +197,8 @@ double take_small_shape(const std::vector<PowerBin>& bins,
     if (!(best->weight > 0) || !(std::abs(best->posterior.mean) > kTaken)) return taken;
     Band with = band;
     with.small = {kOrders[static_cast<std::size_t>(best - answers.begin())].power,
-                  best->posterior.mean * best->sd};
+                  best->posterior.mean * best->sd,
+                  false};
     if (with.low_pass) {
       with.low_pass.reset();
       with.low_pass = fit_low_pass(bins_of(bins, with, rate_hz), rate_hz, terms);

@@ -14,6 +14,7 @@ struct Band;
 struct SmallShape {
   int power = 1;
   double amplitude = 0;
+  bool seen = false;  ///< large enough to be a part of what is reported, too
 };
 
 /// Its mean over a bin.
