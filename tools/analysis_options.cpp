@@ -191,6 +191,16 @@ void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_flag("--no-remedies",
                 a.no_remedies,
                 "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");
+  verb.add_parsed(
+      "--assume",
+      "white-top",
+      [&a](const std::string& text) {
+        if (text != "white-top")
+          throw usage_error("E0201", "--assume").says("white-top was expected").got(text);
+        a.options.fit.white_top = true;
+      },
+      "nothing shapes the top of the spectrum: no filter, no quantization noise too weak to be "
+      "seen. N is known better by a third then");
   verb.add_text("--temperature",
                 a.options.temperature,
                 "channel that is the temperature: a polynomial of it, with a lag, is taken out of "

@@ -34,7 +34,7 @@ void add_spectrum_options(VerbOptions& verb,
 /// Samples ("4096"), a time ("20s": `segment_s`, which becomes samples when the rate is known), or
 /// "N/4" (true).
 bool read_segment(const std::string& text, libchar::WelchOptions& spectrum, double& segment_s);
-/// --terms, --threshold, --no-remedies, --temperature, --no-second-opinion
+/// --terms, --threshold, --no-remedies, --assume, --temperature, --no-second-opinion
 void add_fit_options(VerbOptions& verb, AnalysisOptions& analysis);
 
 /// All of the above, and how a log is read: what a characterization can be told. `session` and

@@ -65,6 +65,7 @@ const Fields<FitOptions>& fit_settings() {
       custom<FitOptions, read_terms, write_terms>("terms", "list of texts"),
       field<&FitOptions::threshold>("threshold"),
       field<&FitOptions::remedies>("remedies"),
+      field<&FitOptions::white_top>("white_top"),
       field<&FitOptions::second_opinion>("second_opinion"),
       field<&FitOptions::profile_above>("profile_above"),
   };

@@ -20,7 +20,8 @@ struct FitOptions {
   bool remedies = true;
   /// a Gauss-Markov process is looked for beside flicker and walk (remedies on, no ramp offered)
   bool gauss_markov = true;
-  /// the samples are a clock's frequency: white and flicker phase noise are offered, no ramp and no Gauss-Markov process
+  /// the samples are a clock's frequency: white and flicker phase noise are offered, no ramp and no
+  /// Gauss-Markov process
   bool clock = false;
   /// nothing shapes the top of the spectrum: no filter, no quantization noise that is too weak to be seen
   bool white_top = false;

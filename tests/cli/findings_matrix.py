@@ -68,6 +68,19 @@ def cut():
     return {"gyro": ("deg/s", [max(-1.5 * SD, min(v, 1.5 * SD)) for v in noise(30000)])}
 
 
+def outliers():
+    return {"gyro": ("deg/s", [v + (draw.choice((-6, 6)) * SD if draw.random() < 0.006 else 0) for v in noise(60000)])}
+
+
+def coupled():
+    keep, last, out = math.exp(-2 * math.pi * 0.3 / RATE), 0.0, []
+    white = noise(60001)
+    for before, v in zip(white, white[1:]):
+        last = keep * last + v - before
+        out.append(last)
+    return {"gyro": ("deg/s", out)}
+
+
 # kind: record, code, options of the analysis, whether options mend it, whether it is bad, true N of the first channel
 KINDS = [
     ("marks", marks, "missing_mark", [], True, True, N),
@@ -77,7 +90,10 @@ KINDS = [
     ("frozen", frozen, "stuck", [], True, False, N),
     ("dead", dead, "dead_band", [], False, True, None),
     ("cut", cut, "much_saturated", [], False, True, None),
+    ("outliers", outliers, "outliers_in_n", [], False, False, None),
+    ("coupled", coupled, "high_passed", [], False, False, None),
 ]
+OF_THE_FIT = {"motion", "outliers_in_n", "high_passed"}  # what samples alone do not show
 faults = []
 
 
@@ -108,7 +124,7 @@ with tempfile.TemporaryDirectory() as folder:
             "dtype": "f64", "endian": "little", "rate_hz": RATE,
             "channels": [{"name": name, "unit": unit} for name, (unit, _) in channels.items()]}))
         # inspect sees samples alone; what only the analysis sees is asked of that.
-        if code != "motion":
+        if code not in OF_THE_FIT:
             seen = json.loads(run("inspect", log, "--json").stdout)["recordings"][0]["channels"][0]["findings"]
             expect(code in codes(seen), f"{kind}: inspect --json does not have {code}")
         out = here / f"{kind}-report"
@@ -131,7 +147,7 @@ with tempfile.TemporaryDirectory() as folder:
             expect((export.returncode == 3) == bad, f"{kind}: export of a model with {code}: exit {export.returncode}")
             anyway = run("model", *models, "--to", "ros", "--anyway")
             expect(first in anyway.stdout, f"{kind}: the exported file does not say {code}")
-        if code != "motion" and code != "not_gravity":
+        if code not in OF_THE_FIT | {"not_gravity"}:
             curve = run("allan", log, *options, "-o", here / f"{kind}.csv")
             expect(first in curve.stderr, f"{kind}: allan does not say {code}")
         lot = here / f"{kind}-lot"

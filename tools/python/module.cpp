@@ -199,6 +199,7 @@ CharacterizeOptions characterize_options(const py::dict& reading, const py::dict
   given.read("threshold", o.fit.threshold);
   given.read("remedies", o.fit.remedies);
   given.read("second_opinion", o.fit.second_opinion);
+  given.read("white_top", o.fit.white_top);
   o.allan.threads = o.spectrum.threads = o.reading.threads;
   if (given.has("only")) {
     const auto only = given.get<std::string>("only");

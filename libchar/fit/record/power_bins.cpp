@@ -28,8 +28,9 @@ struct LineClip {
 constexpr std::uint64_t kLowest = 32;
 constexpr double kFalseAlarm = 1.54e-8;  // P(chi^2_1 > 32)
 
-/// Floor of the coefficients: medians over stretches of an eighth of k, 64 to 2048 coefficients long, joined by straight
-/// lines in log-log, so that the slope of flicker and walk within a stretch is not taken for a line.
+/// Floor of the coefficients: medians over stretches of an eighth of k, 64 to 2048 coefficients
+/// long, joined by straight lines in log-log, so that the slope of flicker and walk within a
+/// stretch is not taken for a line.
 class LocalFloor {
  public:
   LocalFloor(const std::vector<double>& mean, std::uint64_t first, double chi_median) {
@@ -64,8 +65,9 @@ class LocalFloor {
   std::vector<double> log_k_, log_floor_;
 };
 
-/// Median of the coefficients beside one, its nearest left out: near the zeros of a filter, and where the two ends of a smooth record
-/// make every second coefficient large, the floor bends faster than its stretches tell.
+/// Median of the coefficients beside one, its nearest left out: near the zeros of a filter, and
+/// where the two ends of a smooth record make every second coefficient large, the floor bends
+/// faster than its stretches tell.
 double median_beside(const std::vector<double>& mean, std::size_t i, std::uint64_t first) {
   constexpr std::size_t kNearest = 2;
   const std::size_t reach = std::clamp<std::size_t>((first + i) / 64, 16, 128);

@@ -21,16 +21,17 @@
 namespace libchar {
 namespace {
 
-// The interval of white noise whose samples are not Gaussian.
-// Whittle's likelihood takes periodogram ordinates for independent. Of white noise of excess kurtosis g they share 2 + g instead of 2:
-// with theta = N^2 and n samples
+// The interval of white noise whose samples are not Gaussian. Whittle's likelihood takes
+// periodogram ordinates for independent. Of white noise of excess kurtosis g they share 2 + g
+// instead of 2: with theta = N^2 and n samples
 //   var(ln theta) = var of the likelihood + g / n
-// (D. R. Brillinger, "Time Series: Data Analysis and Theory", 1981, theorem 5.10.1:
-// covariance of spectral averages = Gaussian part + fourth cumulant / n). Differences of white noise have half its excess kurtosis. Slower
-// terms have weights that do not see white noise, so that theirs stays.
+// (D. R. Brillinger, "Time Series: Data Analysis and Theory", 1981, theorem 5.10.1: covariance of
+// spectral averages = Gaussian part + fourth cumulant / n). Differences of white noise have half
+// its excess kurtosis. Slower terms have weights that do not see white noise, so that theirs stays.
 
-// Widens the interval and covariance of the white noise by what heavy tails add, and says so; nothing where the kurtosis of first
-// differences is below `spike_alarm(samples)`, as of Gaussian noise. `samples` without the missing ones.
+// Widens the interval and covariance of the white noise by what heavy tails add, and says so;
+// nothing where the kurtosis of first differences is below `spike_alarm(samples)`, as of Gaussian
+// noise. `samples` without the missing ones.
 void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit& fit) {
   if (!(difference_kurtosis > spike_alarm(samples))) return;
   constexpr auto kWhite = static_cast<std::size_t>(Term::white);
@@ -52,7 +53,8 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
                     brief_text(wider, 2))));
 }
 
-/// Outliers that are too small to be left out one by one are white noise to a spectrum: their variance is taken out of N².
+/// Outliers that are too small to be left out one by one are white noise to a spectrum: their
+/// variance is taken out of N².
 void take_out_outliers(const std::optional<OutlierVariance>& outliers,
                        double rate_hz,
                        NoiseFit& fit) {

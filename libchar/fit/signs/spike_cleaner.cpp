@@ -114,6 +114,9 @@ SpikeVerdict judge_spikes(const SpikeCount& count) {
              : SpikeVerdict::heavy_tails;
 }
 
+}  // namespace libchar
+
+namespace libchar::detail {
 namespace {
 
 /// Counts and squares of magnitudes by size, up to four scales.
@@ -205,6 +208,10 @@ std::optional<OutlierVariance> outlier_variance(const CoreSums& sums) {
   return OutlierVariance{(sums.all - sums.far) / sums.count / 2,
                          kAll * sums.far / sums.count / 2 / root};
 }
+
+}  // namespace libchar::detail
+
+namespace libchar {
 
 std::string spike_sentence(const SpikeCount& count) {
   switch (judge_spikes(count)) {

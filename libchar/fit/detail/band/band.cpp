@@ -1,12 +1,15 @@
-// A likelihood weighs every frequency by its information, and nearly all of that is at the top, where it concerns nothing but white
-// noise: a small misfit there is paid for with the slow coefficients. So the noise terms are asked to hold from the slow end up to
-// where they do, together with a shape, ln |H(f)|² = a_1 x + a_2 x² + …, x = (f / f_band)²: of any linear filter with a real impulse
-// response it is even and analytic about f = 0, and |H(0)| = 1 by construction.
-//   1. the whole spectrum, terms alone; 2. with quantization noise, or a filter known by name; 3. cuts every half octave from the
-//   top, orders 0..4 of the shape: the first that passes, with one order more, which takes out the bias that "just passes" leaves;
+// A likelihood weighs every frequency by its information, and nearly all of that is at the top,
+// where it concerns nothing but white noise: a small misfit there is paid for with the slow
+// coefficients. So the noise terms are asked to hold from the slow end up to where they do,
+// together with a shape, ln |H(f)|² = a_1 x + a_2 x² + …, x = (f / f_band)²: of any linear filter
+// with a real impulse response it is even and analytic about f = 0, and |H(0)| = 1 by construction.
+//   1. the whole spectrum, terms alone; 2. with quantization noise, or a filter known by name; 3.
+//   cuts every half octave from the
+//   top, orders 0..4 of the shape: the first that passes, with one order more, which takes out the
+//   bias that "just passes" leaves;
 //   4. where the band is cut: the same without the broad peaks, if that makes it wider.
-// A band passes when the residuals of its bins (the slowest few aside, where drift lives) and of its top octave and a half are those
-// of noise.
+// A band passes when the residuals of its bins (the slowest few aside, where drift lives) and of
+// its top octave and a half are those of noise.
 #include "libchar/fit/detail/band/band.hpp"
 
 #include <algorithm>
@@ -29,7 +32,8 @@ constexpr std::size_t kFewestBins = 20;  ///< of a band
 constexpr double kTopOctaves = 1.5;
 constexpr double kBandStep = 0.5;  ///< octaves
 constexpr double kDeepCut = 0.25;  ///< of half the rate
-/// Of half the rate: below it hardly a filter has more than the beginning of its slope, and a free shape would take the place of slow noise.
+/// Of half the rate: below it hardly a filter has more than the beginning of its slope, and a free
+/// shape would take the place of slow noise.
 constexpr double kDeepest = 0.125;
 constexpr double kPeak = 4;        ///< standard deviations that a broad peak stands above its sides
 constexpr std::size_t kSkirt = 2;  ///< bins on each side of it that hold too much of it as well
@@ -144,8 +148,8 @@ void leave_out_nulls(const std::vector<PowerBin>& bins, double rate_hz, Band& ba
     if (mean_ratio(band.filter, bins[j], rate_hz) < kNull) band.inside[j] = 0;
 }
 
-/// Most of a narrow filter's band is near its zeros: the differences of neighbouring samples, which live there, must not be several times
-/// what the filter lets through.
+/// Most of a narrow filter's band is near its zeros: the differences of neighbouring samples, which
+/// live there, must not be several times what the filter lets through.
 bool explains_nulls(const std::vector<PowerBin>& bins, double rate_hz, const Trial& trial) {
   constexpr double kTimes = 2, kBeside = 0.5;
   double inside = 0, outside = 0, expected = 0;
@@ -198,8 +202,9 @@ struct BroadPeak {
   double deviations = 0;         ///< standard deviations of noise
 };
 
-/// A broad peak (vibration, a floor that sways, a wandering line): up to ten bins whose mean, on the scale of the model, is above the median
-/// of the ten bins before as well as of the ten after, so that a slope or a rising end is none.
+/// A broad peak (vibration, a floor that sways, a wandering line): up to ten bins whose mean, on
+/// the scale of the model, is above the median of the ten bins before as well as of the ten after,
+/// so that a slope or a rising end is none.
 BroadPeak highest_peak(const std::vector<PowerBin>& bins, const Trial& trial) {
   constexpr std::size_t kReach = 10, kLongest = 10;
   constexpr double kFewestDof = 16, kLowest = 0.02;
@@ -274,7 +279,8 @@ struct Search {
     return at(band);
   }
 
-  /// The widest band that passes with a filter or loop of low corner: found in the middle of the spectrum, then followed up and down.
+  /// The widest band that passes with a filter or loop of low corner: found in the middle of the
+  /// spectrum, then followed up and down.
   std::optional<Trial> widest_named(const Band& from, NamedShape::Family family) const {
     constexpr int kCuts = 10, kMiddle = 2;
     const auto cut = [&](int steps) {
@@ -299,8 +305,8 @@ struct Search {
     return std::nullopt;
   }
 
-  /// Not where a polynomial of as many coefficients explains the same band as well, and not where no shape at all could by chance: a
-  /// shape leaves white noise ten times less well known.
+  /// Not where a polynomial of as many coefficients explains the same band as well, and not where
+  /// no shape at all could by chance: a shape leaves white noise ten times less well known.
   bool needed(const Trial& named) const {
     constexpr double kWorth = 1, kBeyondChance = 9;  ///< of ln L
     Band plain = named.band;
@@ -350,8 +356,9 @@ struct Search {
     return band;
   }
 
-  /// `narrow`, or the band without broad peaks where that is twice as wide. What is left of their skirts is a small misfit, and moves the
-  /// coefficients less than a deep cut does: there a smaller probability passes.
+  /// `narrow`, or the band without broad peaks where that is twice as wide. What is left of their
+  /// skirts is a small misfit, and moves the coefficients less than a deep cut does: there a
+  /// smaller probability passes.
   std::optional<Band> wider_between_peaks(const Band& whole, std::optional<Band> narrow) {
     const Band holes = without_peaks(whole);
     if (holes.inside == whole.inside) return narrow;
@@ -432,8 +439,9 @@ BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, dou
 
 namespace {
 
-/// The largest deviate of score tests for a shelf, ln gain = a x / (1 + x), x = (f / f_c)², its corner at one of the octaves of the
-/// record: what rises from the slow end on is behind a high-pass.
+/// The largest deviate of score tests for a shelf, ln gain = a x / (1 + x), x = (f / f_c)², its
+/// corner at one of the octaves of the record: what rises from the slow end on is behind a
+/// high-pass.
 struct ShelfTest {
   double largest = 0, rising = 0;
 };
@@ -548,8 +556,8 @@ Band passing_band(const std::vector<PowerBin>& bins,
       simple && best->top_hz > 0.99 * rate_hz / 2 ? std::nullopt : search.named(whole);
   if (named && (!simple || named->top_hz > kAsWide * best->top_hz)) return *named;
   if (!best || best->top_hz < rate_hz / 2 * 0.99) best = search.wider_between_peaks(whole, best);
-  // One clean record in a hundred is here by chance, and where the chance is in its slow part only a deep cut takes it away.
-  // Filters and motion are told from chance by far less than a millionth.
+  // One clean record in a hundred is here by chance, and where the chance is in its slow part only
+  // a deep cut takes it away. Filters and motion are told from chance by far less than a millionth.
   const double chance = std::min(unshaped->band.goodness.p, unshaped->band.top.p);
   const double left = best ? best->top_hz / (rate_hz / 2) : 0;
   if ((chance >= options.misfit && left < kDeepCut) ||

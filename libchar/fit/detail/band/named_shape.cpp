@@ -1,6 +1,7 @@
-// The power gain of a digital filter of low order is a ratio of polynomials in s = sin²(pi f / rate), exactly. Beside a polynomial of
-// ln |H|² over the whole band it has the few parameters that such a filter has, and leaves the slow end of the spectrum to the terms.
-// Its unknowns p are found by Fisher scoring of terms and shape together: the shape is a straight line in p at each step,
+// The power gain of a digital filter of low order is a ratio of polynomials in s = sin²(pi f /
+// rate), exactly. Beside a polynomial of ln |H|² over the whole band it has the few parameters that
+// such a filter has, and leaves the slow end of the spectrum to the terms. Its unknowns p are found
+// by Fisher scoring of terms and shape together: the shape is a straight line in p at each step,
 //   ln |H(p + d)|² ~ ln |H(p)|² + d' (d ln |H|² / dp),
 // with the step halved until the likelihood rises.
 #include "libchar/fit/detail/band/named_shape.hpp"

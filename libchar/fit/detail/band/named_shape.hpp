@@ -11,7 +11,8 @@
 
 namespace libchar {
 
-/// |H|² = (1 + s/s_z) (1 - s)^c / D,  s = sin²(pi f / rate), with c for zeros at half the rate and what another filter does far above:
+/// |H|² = (1 + s/s_z) (1 - s)^c / D,  s = sin²(pi f / rate), with c for zeros at half the rate and
+/// what another filter does far above:
 ///   shelf:        D = 1 + s/s_p                           (one pole, one zero)
 ///   second_order: D = (1 - s/s_p)² + 4 zeta² s/s_p, no zero
 ///   loop:         the same with the zero                  (alpha-beta trackers, closed loops)
@@ -34,8 +35,8 @@ std::array<double, 4> named_log_slopes(const NamedShape& shape,
                                        const PowerBin& bin,
                                        double rate_hz);
 
-/// The likeliest shape of a family with all `terms` free; from the best of a grid where there is no start, none where even that has a half
-/// deviance above `hopeless`.
+/// The likeliest shape of a family with all `terms` free; from the best of a grid where there is no
+/// start, none where even that has a half deviance above `hopeless`.
 std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
                                           double rate_hz,
                                           const TermSet& terms,

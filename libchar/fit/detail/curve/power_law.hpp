@@ -15,8 +15,8 @@ struct PowerLawChoice {
   double white = 0, white_log_sd = 0;  ///< Q, and the sd of ln Q² with h and alpha unknown
 };
 
-/// The law where it beats all offered terms, which have one parameter more, by more than they do in 1 % of the records that they
-/// describe, and is neither of them.
+/// The law where it beats all offered terms, which have one parameter more, by more than they do in
+/// 1 % of the records that they describe, and is neither of them.
 std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins,
                                                const Band& band,
                                                double rate_hz,
