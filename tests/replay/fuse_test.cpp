@@ -108,7 +108,7 @@ FuseOptions by(const std::string& label) {
 TEST_CASE("fuse: the log that it was learnt from gives the replay's estimates, bit for bit") {
   const std::string all =
       "sensors:\n"
-      "  - {name: a, noise: 0.02}\n  - {name: b, noise: 0.02, scale: 0.5, unit: rev}\n"
+      "  - {name: a, noise: 0.02}\n  - {name: b, noise: 0.02, scale: 0.5, unit: deg/s}\n"
       "  - {name: c, noise: 0.02}\n  - {name: d, noise: 0.06}\n";
   const std::string head = "format: scene\nversion: 1\nrecording: log.csv\n";
   const std::string aligned = GENERATE(std::string(),
@@ -150,12 +150,12 @@ TEST_CASE("fuse: rest, several inputs and a tilt as the replay has them") {
   SECTION("units that the scene says in place of the log") {
     const FuseBench bench(
         "format: scene\nversion: 1\nrecording: {file: log.csv, units: [rad/s]}\n"
-        "sensors: [{name: a, scale: 2, unit: m}, b, c]\n");
+        "sensors: [{name: a, scale: 2, unit: deg/s}, b, c]\n");
     KeptColumns kept;
     const FuseResult fused = bench.fuse_log(kept, by("mean"));
     CHECK(differences(kept.columns[0], bench.replayed.of("mean")) == 0);
-    CHECK(fused.sensors[0].unit == "m");
-    CHECK(fused.sensors[1].unit == "rad/s");
+    CHECK(fused.sensors[0].unit == "deg/s");
+    CHECK(fused.sensors[1].unit == "deg/s");
   }
   SECTION("trends and filters run over the new log") {
     const std::string prepared =

@@ -17,6 +17,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/replay/detail/plan/common_unit.hpp"
 
 namespace libchar {
 namespace {
@@ -250,6 +251,7 @@ Instants::Instants(const Scene& scene, Progress& progress)
     }
   }
   inputs_ = info_.input_names.size();
+  factors_ = to_common_unit(scene, reference_units, info_.units);
   if (scene.tilt) convert_tilt();
   if (scene.reference) reference_offset_ = scene.reference->offset * truth_factor_;
   if (scene.reference && scene.reference->lag_s != 0) set_lag(scene.reference->lag_s, progress);

@@ -40,6 +40,21 @@ std::string reading(const Scene& scene, const Instants& instants) {
                      source.kept ? "once, and keeps them" : "again for each pass");
 }
 
+// Of sensors whose unit is not that of the others; "": all are in one.
+std::string conversions(const Scene& scene, const Instants& instants) {
+  std::string out, common;
+  for (std::size_t i = 0; !scene.tilt && i < scene.sensors.size(); ++i)
+    if (instants.factor(i) != 1) {
+      common = instants.info().units[i];
+      out += fmt::format("{}{} from {}",
+                         out.empty() ? "" : ", ",
+                         scene.sensors[i].name,
+                         scene.sensors[i].unit.empty() ? instants.source().info().units[i]
+                                                       : scene.sensors[i].unit);
+    }
+  return out.empty() ? out : "converts to " + common + ": " + out;
+}
+
 std::string reference(const Scene& scene, const Instants& instants) {
   if (!scene.reference)
     return "no reference: no algorithm learns, scores are leave-one-out and split-array";
@@ -113,6 +128,8 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
                                    const Instants& instants,
                                    const SensorKnowledge& knowledge) {
   std::vector<std::string> out = {reading(scene, instants), reference(scene, instants)};
+  if (std::string text = conversions(scene, instants); !text.empty())
+    out.push_back(std::move(text));
   if (!scene.tilt) out.push_back(levels(scene, knowledge));
   if (scene.rest)
     out.push_back(fmt::format("at rest from {} to {}: offsets subtracted",
