@@ -150,12 +150,12 @@ TEST_CASE("fuse: rest, several inputs and a tilt as the replay has them") {
   SECTION("units that the scene says in place of the log") {
     const FuseBench bench(
         "format: scene\nversion: 1\nrecording: {file: log.csv, units: [rad/s]}\n"
-        "sensors: [{name: a, scale: 2, unit: deg/s}, b, c]\n");
+        "sensors: [{name: a, scale: 2, unit: rad/s}, b, c]\n");
     KeptColumns kept;
     const FuseResult fused = bench.fuse_log(kept, by("mean"));
     CHECK(differences(kept.columns[0], bench.replayed.of("mean")) == 0);
-    CHECK(fused.sensors[0].unit == "deg/s");
-    CHECK(fused.sensors[1].unit == "deg/s");
+    CHECK(fused.sensors[0].unit == "rad/s");
+    CHECK(fused.sensors[1].unit == "rad/s");
   }
   SECTION("trends and filters run over the new log") {
     const std::string prepared =
