@@ -70,9 +70,9 @@ struct AlgorithmResult {
   double learning_s = 0;     ///< making it and its learning, CPU of one core
   std::optional<std::uint64_t> peak_bytes;  ///< of heap, over learning and run; none: not measured
 
-  /// at the end: of each input, one per sensor; empty: not known
+  /// of each input, one per sensor: medians over the run, of several inputs those at its end; empty: not known
   std::vector<std::vector<double>> weights;
-  std::vector<double> variances;  ///< at the end, one per sensor; empty: not known
+  std::vector<double> variances;  ///< medians over the run, one per sensor; empty: not known
   double weight_distance =
       0;  ///< RMS over time of |w - optimal weights| (Euclid), one input; NaN: unknown
   double variance_error =

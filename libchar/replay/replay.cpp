@@ -133,6 +133,7 @@ class Replay {
     frame_.start_s =
         instants_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
     frame_.scored_from_s = frame_.start_s + static_cast<double>(plan_.warm_up) / frame_.rate_hz;
+    frame_.instants = plan_.run_to - plan_.run_from;
     frame_.output_scale = instants_.info().output_scale;
     frame_.tilt = scene_.tilt.has_value();
     frame_.allan = (options_.allan || options_.no_skip) && instants_.info().has_reference;

@@ -218,7 +218,7 @@ TEST_CASE("fuse: a new log, its deviations and flags") {
   CHECK(kept.columns[2][5000] == 0);
   CHECK(std::isnan(kept.columns[5][20]));
   // Read between two samples, a gap takes either with it; and so does the end of the log.
-  CHECK(fused.sensors[3].missing == 2 * 113 + 1);
+  CHECK(fused.sensors[3].missing == 2 * 113 + 2);
   CHECK(fused.deviations > 5900);
 }
 
