@@ -20,9 +20,9 @@
 #include "libchar/replay/detail/align/find_offset.hpp"
 #include "libchar/replay/detail/blind_run.hpp"
 #include "libchar/replay/detail/detection_sweep.hpp"
-#include "libchar/replay/detail/judgement.hpp"
+#include "libchar/replay/detail/judge/judgement.hpp"
+#include "libchar/replay/detail/judge/partial_scores.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
-#include "libchar/replay/detail/partial_scores.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan/copied_sensors.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
@@ -372,6 +372,7 @@ class Replay {
                 const ReplayResult& so_far,
                 const ScoreOptions& scoring) const;
   std::vector<Meters> add_algorithms(ReplayResult& out, const ScoreOptions& scoring) const;
+  std::vector<double> costs() const;
   void add_tracks(ReplayResult& out) const;
   SensorResult sensor_result(std::size_t i, const ScoreOptions& scoring) const;
 
@@ -510,6 +511,15 @@ std::vector<Meters> Replay::add_algorithms(ReplayResult& out, const ScoreOptions
   return meters;
 }
 
+// Declared, never measured: what is recommended does not depend on a clock.
+std::vector<double> Replay::costs() const {
+  const fusion::Array live = subset(plan_.array, plan_.live);
+  std::vector<double> out;
+  for (const PlannedAlgorithm& algorithm : plan_.algorithms)
+    if (algorithm.asked) out.push_back(algorithm.entry->cost_ns(live, algorithm.settings));
+  return out;
+}
+
 // Of the method that one would use: the best, or else the first in the order.
 void Replay::add_tracks(ReplayResult& out) const {
   const AlgorithmResult* shown = out.best ? &out.algorithms[*out.best] : nullptr;
@@ -557,7 +567,7 @@ ReplayResult Replay::collect() {
   for (const SensorMeter& meter : sensors_)
     healthy_rms.push_back(std::sqrt(meter.healthy_squares / meter.healthy_samples));
   judge_optimum(out, optimum_, healthy_rms, plan_.array);
-  judge_best(out, meters, scoring);
+  judge_best(out, meters, costs(), scoring);
   Meters single;
   for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
   judge_best_sensor(out, meters, single, scoring);

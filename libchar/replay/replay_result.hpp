@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libchar/core/document/entry.hpp"
@@ -49,7 +50,9 @@ struct ReplayFacts {
   std::vector<InputResult> inputs;
   /// by `false_alarm_s`; empty: no fault is known, or no algorithm that runs has the detector
   std::vector<DetectionAt> detection;
-  /// the 95 % interval of the best method's RMSE over that of the best sensor; one input and a reference
+  /// label of the best method in whose estimates several sensors have a part; "": none has a score
+  std::string best_fusion;
+  /// the 95 % interval of its RMSE over that of the best sensor; one input and a reference
   std::optional<Interval> best_over_sensor;
   /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen
   bool offsets_decide = false;
@@ -78,6 +81,13 @@ struct ReplayResult : ReplayFacts {
   ReplayWork work;
   WorkDone counted{};  ///< all of it
   double seconds = 0;  ///< measured
+
+  /// By its label; null: there is none.
+  const AlgorithmResult* find(std::string_view label) const {
+    for (const AlgorithmResult& a : algorithms)
+      if (a.label == label) return &a;
+    return nullptr;
+  }
 };
 
 }  // namespace libchar

@@ -66,7 +66,9 @@ struct FuseBench {
     const Scene read = bench.read(scene);
     ReplayWorkspace workspace;
     workspace.estimates = &replayed;
-    result = replay(read, {}, no_progress(), workspace);
+    ReplayOptions options;
+    options.published = true;
+    result = replay(read, options, no_progress(), workspace);
     learnt = parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml");
   }
   FuseResult fuse_log(KeptColumns& kept,

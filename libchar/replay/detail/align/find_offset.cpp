@@ -9,7 +9,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
-#include "libchar/replay/detail/mean_uncertainty.hpp"
+#include "libchar/replay/detail/judge/mean_uncertainty.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 
 namespace libchar {

@@ -284,12 +284,15 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
   }
   if (asked.empty() || options.no_skip)
     for (const fusion::Entry& entry : fusion::algorithms())
-      if (!times.contains(std::string(entry.description->name)))
-        out.push_back({std::string(entry.description->name),
-                       &entry,
-                       fusion::Settings(entry.options),
-                       "",
-                       asked.empty()});
+      if (const std::string name(entry.description->name); !times.contains(name))
+        out.push_back(
+            {name,
+             &entry,
+             fusion::Settings(entry.options),
+             entry.description->as_published && !options.published
+                 ? name + " is the form as published: it runs by name, or with `published`"
+                 : "",
+             asked.empty()});
   return out;
 }
 
@@ -364,7 +367,7 @@ ReplayPlan make_plan(const Scene& scene,
   const fusion::Array live = subset(plan.array, plan.live);
   plan.algorithms = choose(scene, options);
   for (PlannedAlgorithm& algorithm : plan.algorithms)
-    algorithm.why = fusion::why_not(*algorithm.entry->description, live);
+    if (algorithm.runs()) algorithm.why = fusion::why_not(*algorithm.entry->description, live);
   if (instants.info().has_reference) plan.optimum = optimum(live);
   const auto any = [&](auto&& wanted) {
     return std::any_of(plan.algorithms.begin(), plan.algorithms.end(), [&](const auto& a) {

@@ -172,6 +172,7 @@ const Fields<ReplayReport>& ReplayReport::fields() {
       list_of<&T::faults>("faults", reported_fault_fields()),
       list_of<&T::detection>("detection", detection),
       field_or_null<&T::best>("best"),
+      field_or_null<&T::best_fusion>("best_fusion"),
       field_or_null<&T::best_sensor>("best_sensor"),
       field<&T::best_over_sensor>("best_over_sensor_ci95"),
       field<&T::offsets_decide>("offsets_decide"),
