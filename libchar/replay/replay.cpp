@@ -48,7 +48,7 @@ struct SensorMeter {
 
 class Replay {
  public:
-  Replay(const Scene& scene,
+  Replay(Scene& scene,
          const ReplayOptions& options,
          Progress& progress,
          const ReplayWorkspace& workspace)
@@ -63,6 +63,9 @@ class Replay {
     passes_ += scene.rest ? 1 : 0;
     instants_.set_offsets(knowledge_.offsets);
     plan_ = make_plan(scene, options, instants_, knowledge_);
+    // Too short to teach and to be judged.
+    if (scene.align && scene.align->choose && plan_.learn_to <= plan_.learn_from)
+      scene.align.reset();
     if (scene.reference && scene.reference->estimate_offset) estimate_offset();
   }
 
@@ -119,8 +122,20 @@ class Replay {
   // Before anything is learnt or fused.
   void align() {
     PassProgress passing(progress_, "aligning");
-    alignment_ = learn_scene_alignment(scene_, plan_, instants_, passing);
+    std::vector<AlignmentResult::Trial> trials;
+    if (scene_.align->choose) {
+      ++passes_;
+      trials = choose_scene_terms(scene_, plan_, instants_, passing);
+    }
+    try {
+      alignment_ = learn_scene_alignment(scene_, plan_, instants_, passing);
+    } catch (const Error& error) {
+      // Nobody asked for terms that cannot be learnt here.
+      if (!scene_.align->choose || error.problem().kind != ErrorKind::numeric) throw;
+      return scene_.align.reset();
+    }
     aligned_ = measure_alignment(scene_, plan_, instants_, *alignment_, plan_.warnings, passing);
+    aligned_->trials = std::move(trials);
     passes_ += 2;
     if (scene_.align->apply) instants_.set_alignment(&*alignment_);
   }
@@ -376,7 +391,7 @@ class Replay {
   void add_tracks(ReplayResult& out) const;
   SensorResult sensor_result(std::size_t i, const ScoreOptions& scoring) const;
 
-  const Scene& scene_;
+  Scene& scene_;  // its alignment is chosen here
   const ReplayOptions& options_;
   const ReplayWorkspace workspace_;
   Progress& progress_;
@@ -590,7 +605,8 @@ ReplayResult Replay::collect() {
 std::vector<std::string> explain_replay(const Scene& scene,
                                         const ReplayOptions& options,
                                         Progress& progress) {
-  return Replay(scene, options, progress, {}).explain();
+  Scene own = taught(scene, options);
+  return Replay(own, options, progress, {}).explain();
 }
 
 namespace {
@@ -611,7 +627,8 @@ ReplayResult replay(const Scene& scene,
                     const ReplayWorkspace& workspace) {
   const auto start = std::chrono::steady_clock::now();
   const WorkMeter work;
-  ReplayResult out = Replay(scene, options, progress, workspace).run();
+  Scene own = taught(scene, options);
+  ReplayResult out = Replay(own, options, progress, workspace).run();
   count_work(WorkKind::learnt_instants, out.work.learnt);
   count_work(WorkKind::fused_instants, out.work.steps);
   count_work(WorkKind::blind_instants, out.work.blind_steps);

@@ -28,6 +28,15 @@ struct SensorResult {
 
 /// What was learnt of the sensors before fusion, and what their errors are made of on the run.
 struct AlignmentResult {
+  /// A term of the alignment that was tried: errors on halves of the learning window, each taught by the other.
+  struct Trial {
+    std::string term;  ///< "bias", "delay", "delay, cubic", "gain", "misalignment"; "": as recorded
+    double rmse =
+        0;  ///< of weights learnt on the other half, with it and with the terms that were kept before
+    double of_mean = 0;  ///< of the plain mean
+    bool kept = false;
+  };
+
   fusion::Alignment learnt;
   TimeWindow window;          ///< it was learnt on
   bool by_reference = false;  ///< by the reference; else by the sensors' mean
@@ -35,6 +44,7 @@ struct AlignmentResult {
   bool overlaps = false;  ///< learnt on a part of what is judged
   fusion::ErrorBudget budget;
   std::vector<std::size_t> budgeted;  ///< sensors in the budget
+  std::vector<Trial> trials;          ///< where the terms were chosen; the first is without any
 };
 
 /// By how much the reference reads more than the sensors, as it was found; in the unit of the input.

@@ -43,7 +43,7 @@ std::string log_in(const UnitCase& units, double first) {
 
 constexpr const char* kUnitScene =
     "format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, noise: 0.1}, b, "
-    "c]\nreference: {channels: [x]}\n";
+    "c]\nreference: {channels: [x]}\nevaluation: [0, end]\n";
 
 std::string unit_refusal(const test::SceneBench& bench) {
   try {

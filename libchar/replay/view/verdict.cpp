@@ -115,6 +115,31 @@ std::string without_reference_sentence(const ReplayResult& r,
   return best.label + " learns from a reference.";
 }
 
+// What the learning window taught, and what each step of it brought.
+std::string taught_sentence(const ReplayResult& r) {
+  if (!r.alignment || r.alignment->trials.empty() || !r.learning) return "";
+  const std::vector<AlignmentResult::Trial>& trials = r.alignment->trials;
+  std::vector<std::string> kept, idle;
+  for (std::size_t k = 1; k < trials.size(); ++k) {
+    const AlignmentResult::Trial& trial = trials[k];
+    if (trial.kept)
+      kept.push_back(fmt::format(
+          "{} {} (mean {})", trial.term, brief_text(trial.rmse, 3), brief_text(trial.of_mean, 3)));
+    else
+      idle.push_back(trial.term);
+  }
+  std::string out = fmt::format(
+      "{} taught ({} to {}). One half of it judged by the other: the mean {}, learnt weights {}",
+      r.scene.learning ? "The learning window" : "The first half of the recording",
+      duration_text(r.learning->from_s),
+      duration_text(r.learning->to_s),
+      error_text(trials[0].of_mean, r.inputs[0].unit),
+      error_text(trials[0].rmse, r.inputs[0].unit));
+  if (!kept.empty()) out += fmt::format("; taken out of the sensors in turn: {}", list_of(kept));
+  if (!idle.empty()) out += fmt::format("; not worth it: {}", list_of(idle));
+  return out + ".";
+}
+
 std::string bounds_sentence(const ReplayResult& r) {
   std::vector<std::string> bounds;
   for (const AlgorithmResult* a : ranked(r))
@@ -224,6 +249,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
     add(single.text);
   add(alone_sentence(r, best));
   add(without_reference_sentence(r, best, costs));
+  add(taught_sentence(r));
   add(equals_sentence(r, best, costs));
   if (r.has_reference)
     add(bounds_sentence(r));

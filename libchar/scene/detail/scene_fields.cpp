@@ -268,6 +268,12 @@ const Fields<SceneReference>& reference_fields() {
           {.meaning = "the reference reads so much more than the sensors, in "
                       "its own unit; it is subtracted from it (below)",
            .otherwise = "0"}),
+      field<&SceneReference::teach>(
+          "teach",
+          {.meaning = "false: without a learning window nothing is learnt",
+           .otherwise = "true: of a recording of which neither windows "
+                        "nor an alignment are given, the first half "
+                        "teaches"}),
   };
   return rows;
 }
@@ -292,6 +298,12 @@ const Fields<SceneAlign>& align_fields() {
            .meaning = "sinc is within 1e-4 up to 0.37 of the rate; cubic damps what is faster "
                       "than 0.12 of it, aliased vibration too",
            .otherwise = "sinc"}),
+      field<&SceneAlign::choose>(
+          "choose",
+          {.meaning = "terms are tried one by one, each learnt on one half of "
+                      "the stretch and judged on the other, and kept where "
+                      "they pay; needs a reference",
+           .otherwise = "false"}),
       field<&SceneAlign::apply>("apply",
                                 {.meaning = "false: the error budget is reported, and the sensors "
                                             "are fused as recorded",

@@ -50,6 +50,8 @@ SceneAlign align_of(const MapReader& top, const Scene& scene) {
   }
   if (align.by == "reference" && !scene.reference)
     refuse_scene("E0748", at, "by", "the scene has no reference", "by: sensors");
+  if (align.choose && (!scene.reference || align.by == "sensors"))
+    refuse_scene("E0748", at, "choose", "a reference judges what pays", "terms: […] without one");
   if (scene.tilt)
     refuse_scene("E0748", top, "align", "the sensors of a tilt measure different quantities");
   return align;

@@ -20,6 +20,8 @@ namespace {
 // blocks large enough that reading the clock costs nothing.
 constexpr std::int64_t kBlocks = 512;
 constexpr std::int64_t kSmallestBlock = 256, kLargestBlock = 4096;
+/// A shorter recording has no half to spare.
+constexpr std::int64_t kFewestTaught = 512;
 
 [[noreturn]] void refuse(const Scene& scene,
                          const char* code,
@@ -190,12 +192,19 @@ void place_warm_up(const Scene& scene, const Instants& instants, ReplayPlan& pla
            duration_text(static_cast<double>(plan.warm_up) / instants.info().rate_hz));
 }
 
+TimeWindow first_half(const Instants& instants) {
+  const InstantsInfo& info = instants.info();
+  return {0, info.start_s + static_cast<double>(info.count / 2) / info.rate_hz};
+}
+
 // Seconds from the recording's first sample to instants.
 void place_windows(const Scene& scene,
                    const ReplayOptions& options,
                    const Instants& instants,
                    ReplayPlan& plan) {
-  const auto learning = options.learning ? options.learning : scene.learning;
+  auto learning = options.learning ? options.learning : scene.learning;
+  if (!learning && scene.align && scene.align->choose && instants.info().count >= kFewestTaught)
+    learning = first_half(instants);
   const auto evaluation = options.evaluation ? options.evaluation : scene.evaluation;
   const double end_s = instants.info().start_s +
                        static_cast<double>(instants.info().count) / instants.info().rate_hz;
@@ -347,6 +356,28 @@ void keep_budget(const ReplayOptions& options, const fusion::Array& live, Replay
 }
 
 }  // namespace
+
+Scene taught(const Scene& scene, const ReplayOptions& options) {
+  Scene out = scene;
+  const auto& asked = options.algorithms.empty() ? scene.algorithms : options.algorithms;
+  const bool learns =
+      asked.empty() || std::any_of(asked.begin(), asked.end(), [](const SceneAlgorithm& a) {
+        const fusion::Entry* entry = fusion::find_algorithm(a.name);
+        return entry != nullptr && entry->description->needs.reference;
+      });
+  const bool said = scene.learning || scene.evaluation || options.learning || options.evaluation ||
+                    scene.align || scene.fault_free_s || !scene.faults.empty() ||
+                    (scene.simulated && !scene.simulated->faults.empty());
+  const bool one =
+      scene.reference && (scene.reference->mean || scene.reference->channels.size() == 1);
+  if (!learns || said || !one || !scene.reference->teach || scene.simulate || scene.tilt ||
+      scene.sensors.size() < 2)
+    return out;
+  out.align = SceneAlign{};
+  out.align->learn = "learning";
+  out.align->choose = true;
+  return out;
+}
 
 ReplayPlan make_plan(const Scene& scene,
                      const ReplayOptions& options,

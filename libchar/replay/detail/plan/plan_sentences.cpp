@@ -64,14 +64,15 @@ std::string reference(const Scene& scene, const Instants& instants) {
   return fmt::format("reference {}: {}", names, instants.info().reference_use);
 }
 
-std::string learning(const ReplayPlan& plan) {
+std::string learning(const ReplayPlan& plan, bool said) {
   if (plan.learn_to <= plan.learn_from) return "no learning window: nothing is learnt beforehand";
   if (!plan.learning_pass)
     return "the learning window is not read: no algorithm that runs learns there";
-  return fmt::format("learning on {} instants from {} to {}: {}",
+  return fmt::format("learning on {} instants from {} to {}{}: {}",
                      plan.learn_to - plan.learn_from,
                      seconds(plan.learning.from_s),
                      seconds(plan.learning.to_s),
+                     said ? "" : ", the first half, as no window is given (`learning`)",
                      names_of(plan.algorithms, [](const auto& a) { return a.learns_before(); }));
 }
 
@@ -104,6 +105,12 @@ std::string align(const SceneAlign& align) {
       : align.learn == "run" ? "on the evaluation itself"
       : align.learn == "rest" ? "at rest"
                               : "in the learning window";
+  if (align.choose)
+    return fmt::format(
+        "alignment: terms are tried one by one {}, and taken out of the sensors where they pay on "
+        "the "
+        "other half of it",
+        where);
   return fmt::format("alignment: learnt {}{}",
                      where,
                      align.apply ? ", taken out of the sensors before they are fused"
@@ -141,7 +148,8 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
         "offset of the reference: found {}, subtracted from it",
         plan.learn_to > plan.learn_from ? "in the learning window" : "on the evaluation itself"));
   if (scene.align) out.push_back(align(*scene.align));
-  if (scene.reference) out.push_back(learning(plan));
+  if (scene.reference)
+    out.push_back(learning(plan, scene.learning || !scene.align || !scene.align->choose));
   out.push_back(fmt::format("evaluation: {} instants at {} Hz from {} to {}",
                             plan.run_to - plan.run_from,
                             brief_text(instants.info().rate_hz, 6),

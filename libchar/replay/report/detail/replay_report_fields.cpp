@@ -68,6 +68,13 @@ const Fields<ReplayReport::Alignment> kAlignmentBudget = always(Fields<ReplayRep
     written<ReplayReport::Alignment, write_savings>("savings", "map of numbers"),
     list_of<&ReplayReport::Alignment::budgeted_sensors>("sensors", kAlignmentBudgeted),
 });
+const Fields<AlignmentResult::Trial> kTrialFields = always(Fields<AlignmentResult::Trial>{
+    field<&AlignmentResult::Trial::term>("term", {.meaning = "that was tried; empty: as recorded"}),
+    field<&AlignmentResult::Trial::rmse>("rmse",
+                                         {.meaning = "of weights learnt on the other half"}),
+    field<&AlignmentResult::Trial::of_mean>("rmse_of_mean"),
+    field<&AlignmentResult::Trial::kept>("kept"),
+});
 const Fields<ReplayReport::Alignment> kAlignmentFields = always(Fields<ReplayReport::Alignment>{
     beside<&ReplayReport::Alignment::window>(kWindowFields),
     computed<[](const ReplayReport::Alignment& a) { return a.learnt.instants; }>("instants"),
@@ -77,6 +84,7 @@ const Fields<ReplayReport::Alignment> kAlignmentFields = always(Fields<ReplayRep
     field<&ReplayReport::Alignment::overlaps>("judged_where_learnt"),
     field<&ReplayReport::Alignment::learnt, &fusion::Alignment::interpolation>(
         "interpolation", {.words = kInterpolationWords}),
+    list_of<&ReplayReport::Alignment::trials>("trials", kTrialFields),
     field<&ReplayReport::Alignment::learnt, &fusion::Alignment::notes>("notes"),
     list_of<&ReplayReport::Alignment::sensors>("sensors", kChannelFields),
     level<ReplayReport::Alignment>("budget", kAlignmentBudget),
