@@ -91,6 +91,10 @@ class Replay {
 
  private:
   void estimate_lag() {
+    if (instants_.info().slow_reference) {  // with what its values stand for
+      lag_s_ = instants_.lag_s();
+      return;
+    }
     PassProgress passing(progress_, "estimating the lag");
     const TimeWindow all;
     lag_s_ = find_lag(scene_,

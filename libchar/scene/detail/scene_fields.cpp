@@ -11,6 +11,8 @@ namespace libchar {
 namespace {
 
 constexpr Word kInterpolations[] = {{"sinc", 0}, {"cubic", 1}};
+constexpr Word kReadings[] = {
+    {"instant", 0}, {"mean_before", 1}, {"mean_after", 2}, {"mean_centred", 3}, {"estimate", 4}};
 constexpr Word kTeachers[] = {{"reference", 0}, {"sensors", 1}};
 constexpr Word kDetrendWords[] = {{kDetrends[0], 0}, {kDetrends[1], 1}, {kDetrends[2], 2}};
 constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
@@ -268,6 +270,14 @@ const Fields<SceneReference>& reference_fields() {
           {.meaning = "the reference reads so much more than the sensors, in "
                       "its own unit; it is subtracted from it (below)",
            .otherwise = "0"}),
+      field<&SceneReference::samples>(
+          "samples",
+          {.words = kReadings,
+           .meaning =
+               "what each value stands for where there are less than half as many as samples: "
+               "the instant of its stamp, or the mean over the interval in front of it, "
+               "behind it or around it",
+           .otherwise = "estimate: the most likely of the four"}),
       field<&SceneReference::teach>(
           "teach",
           {.meaning = "false: without a learning window nothing is learnt",

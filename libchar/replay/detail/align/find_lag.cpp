@@ -49,13 +49,6 @@ double find_lag(const Scene& scene,
                 const Instants& instants,
                 const TimeWindow& window,
                 Progress& progress) {
-  if (instants.info().averaged > 1)
-    throw Error({ErrorKind::input,
-                 "E0906",
-                 scene.file,
-                 "reference.lag_s: a reference slower than the sensors does not show their lag",
-                 "estimate",
-                 "give lag_s as a number of seconds"});
   const std::int64_t from = instants.instant_at(window.from_s);
   const std::int64_t to = std::min(instants.instant_at(window.to_s), from + kMostInstants);
   const Pair pair = series(scene, instants, from, to, progress);
