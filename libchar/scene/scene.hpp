@@ -48,16 +48,15 @@ struct SceneReference {
   bool estimate_lag = false;
   double offset = 0;             ///< it reads so much more than the sensors; in its own unit
   bool estimate_offset = false;  ///< found in the learning window, else in the evaluation
-  /// What the values of one that is slower than the sensors stand for: of kSlowReadings, or estimate.
+  /// A mean over the interval behind the stamp, in front of it or around it; the value at the stamp.
+  static constexpr std::string_view kReadings[] = {
+      "mean_after", "mean_before", "mean_centred", "instant"};
+  /// What the values of one that is slower than the sensors stand for: of kReadings, or estimate.
   std::string samples = "estimate";
   /// false: nothing is learnt from it unless a window is said; else the first half of a recording teaches where
   /// neither windows nor an alignment are.
   bool teach = true;
 };
-
-/// A mean over the interval behind the stamp, in front of it or around it; the value at the stamp.
-inline constexpr std::string_view kSlowReadings[] = {
-    "mean_after", "mean_before", "mean_centred", "instant"};
 
 /// What all sensors and the reference go through alike, before anything is learnt or fused.
 struct ScenePreparation {

@@ -65,7 +65,7 @@ double best_of(const ReplayResult& result) {
 }  // namespace
 
 TEST_CASE("slow reference: each of the four readings is told from the others by the sensors") {
-  for (const std::string_view one : kSlowReadings) {
+  for (const std::string_view one : SceneReference::kReadings) {
     const std::string samples(one);
     INFO(samples);
     test::SceneBench bench;
@@ -78,7 +78,7 @@ TEST_CASE("slow reference: each of the four readings is told from the others by 
     CHECK_THAT(estimated.reference_use,
                Contains(samples == "instant" ? "its values are samples" : samples));
     CHECK(declared.reference_use.find("likelihood") == std::string::npos);
-    for (const std::string_view other : kSlowReadings)
+    for (const std::string_view other : SceneReference::kReadings)
       if (other != one)
         CHECK(best_of(run_slow(bench, ", samples: " + std::string(other))) >
               1.2 * best_of(estimated));

@@ -329,7 +329,7 @@ void Instants::read_slow_reference(Progress& progress) {
   const SceneReference& reference = *scene_->reference;
   const bool one = !scene_->tilt && (reference.mean || reference.channels.size() == 1);
   SlowQuestion question{reference.samples, reference.lag_s, reference.estimate_lag && one};
-  if (!one && question.samples == "estimate") question.samples = kSlowReadings[0];
+  if (!one && question.samples == "estimate") question.samples = SceneReference::kReadings[0];
   SlowReading reading{question.samples, question.lag_s, 0};
   if (question.samples == "estimate" || question.estimate_lag) {
     std::vector<double> values(track_->values[0].size(), 0.0);

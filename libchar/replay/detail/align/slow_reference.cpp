@@ -1,8 +1,10 @@
-// With r_j the reference at stamps t_j, T their distance, and s(t) what the sensors say together (noise variance v):
+// With r_j the reference at stamps t_j, T their distance, and s(t) what the sensors say together
+// (noise variance v):
 //   instant        r_j = a s(t_j + lag) + b + e
 //   mean_before    r_j = a mean of s over [t_j - T, t_j) + lag, and so on
-// Each reading is fitted by least squares; its log-likelihood is -n/2 ln(variance of e, less what v alone makes), so that
-// a mean does not win by averaging the sensors' noise. v: a sixth difference of s, which smooth motion hardly shows in.
+// Each reading is fitted by least squares; its log-likelihood is -n/2 ln(variance of e, less what v
+// alone makes), so that a mean does not win by averaging the sensors' noise. v: from the sixth
+// difference of s, in which smooth motion hardly shows.
 #include "libchar/replay/detail/align/slow_reference.hpp"
 
 #include <algorithm>
@@ -13,13 +15,14 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMostReferences = 20000;  // of the reference; those in the middle of a longer one
+constexpr std::size_t kMostReferences =
+    20000;  // of the reference; those in the middle of a longer one
 constexpr std::size_t kFewestReferences = 12;
 constexpr double kMostSlowLag_s = 2, kMostLagIntervals = 2;
 constexpr std::size_t kMostLags = 2001;
 /// Noise that a prediction is made of cannot explain more than this share of its error.
 constexpr double kMostNoise = 0.9;
-/// Readings closer than this are not told apart: the first of kSlowReadings among them.
+/// Readings closer than this are not told apart: the first of SceneReference::kReadings among them.
 constexpr double kApart = 3;
 
 // Sums over any stretch of the level.
@@ -145,13 +148,14 @@ SlowReading read_slowly(const SlowQuestion& question,
                         const ReferenceTrack& track,
                         const std::vector<double>& reference) {
   const bool open = question.samples == "estimate";
-  SlowReading out{open ? std::string(kSlowReadings[0]) : question.samples, question.lag_s, 0};
+  SlowReading out{
+      open ? std::string(SceneReference::kReadings[0]) : question.samples, question.lag_s, 0};
   if (!open && !question.estimate_lag) return out;
   const Level sums(level, rate_hz);
   const Readings readings(sums, rate_hz, track, reference);
   Fit best;
   double next = best.likelihood;
-  for (const std::string_view one : kSlowReadings) {
+  for (const std::string_view one : SceneReference::kReadings) {
     const std::string samples(one);
     if (!open && samples != question.samples) continue;
     // A mean over another interval is the same mean with another lag.

@@ -9,7 +9,7 @@
 namespace libchar {
 
 struct SlowReading {
-  std::string samples;  ///< of kSlowReadings
+  std::string samples;  ///< of SceneReference::kReadings
   double lag_s = 0;     ///< the sensors lag the reference by this
   /// log-likelihood above that of the next reading; 0: nothing was estimated
   double margin = 0;
@@ -24,9 +24,9 @@ struct SlowQuestion {
   bool estimate_lag = false;
 };
 
-/// `level`: the sensors' common value at each sample of the recording, at `rate_hz` (NaN: missing). Each reading predicts
-/// the reference by the level: a sample by the level at its stamp, a mean by the level's mean over the interval; the
-/// most likely one is taken, with its lag where that is asked for.
+/// `level`: the sensors' common value at each sample of the recording, at `rate_hz` (NaN: missing).
+/// Each reading predicts the reference by it: a sample by the level at its stamp, a mean by that of
+/// the level over the interval. The most likely one is taken, with its lag where that is asked for.
 SlowReading read_slowly(const SlowQuestion& question,
                         const std::vector<double>& level,
                         double rate_hz,
