@@ -298,7 +298,7 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
             {name,
              &entry,
              fusion::Settings(entry.options),
-             entry.description->as_published && !options.published
+             asked.empty() && entry.description->as_published && !options.published
                  ? name + " is the form as published: it runs by name, or with `published`"
                  : "",
              asked.empty()});
