@@ -43,13 +43,19 @@ SceneAlign align_from_words(const std::string& text, const Scene& scene) {
   SceneAlign align;
   const std::size_t at = text.find('@');
   const std::string terms = text.substr(0, at);
-  if (terms != "all")
+  align.choose = terms == "auto";
+  if (align.choose && !scene.reference)
+    throw usage_error("E0910", "--align")
+        .says("a reference judges which terms pay")
+        .got(terms)
+        .hint("name the terms instead");
+  if (terms != "all" && !align.choose)
     for (const std::string& term : parts_of(terms, ',')) {
       if (std::find(std::begin(kAlignTerms), std::end(kAlignTerms), term) == std::end(kAlignTerms))
         throw usage_error("E0910", "--align")
             .says("no term of an alignment")
             .got(term)
-            .hint("all, or some of {}", fmt::join(kAlignTerms, ", "));
+            .hint("auto, all, or some of {}", fmt::join(kAlignTerms, ", "));
       align.terms.push_back(term);
     }
   const std::string where = at == std::string::npos ? "" : text.substr(at + 1);
@@ -262,8 +268,11 @@ void add_replay_source(VerbOptions& options, Session& session, ReplaySource& sou
                 "--sensors")
       .value_name("SCENE|LOG");
   add_data_options(options, session, source);
-  add_window(
-      options, "--learning", source.learning, "learning window in seconds (default: the scene's)");
+  add_window(options,
+             "--learning",
+             source.learning,
+             "learning window in seconds, or none (default: the scene's, else with a reference the "
+             "first half of a recording)");
   add_window(options,
              "--evaluation",
              source.evaluation,
@@ -274,11 +283,11 @@ void add_replay_source(VerbOptions& options, Session& session, ReplaySource& sou
              source.rest,
              "the true input is zero there: offsets and noise are measured (default: the scene's)");
   options
-      .add_text(
-          "--align",
-          source.align,
-          "take these out of the sensors first: all, or some of delay,bias,gain,misalignment; "
-          "learnt @rest, @learning, @run or @FROM..TO (default: the scene's)")
+      .add_text("--align",
+                source.align,
+                "take these out of the sensors first: auto (those that pay), all, or some of "
+                "delay,bias,gain,misalignment; "
+                "learnt @rest, @learning, @run or @FROM..TO (default: the scene's)")
       .value_name("TERMS[@WHERE]");
   add_preparation_options(options, source);
   options.add_instant("--warm-up",
@@ -296,7 +305,12 @@ void add_replay_source(VerbOptions& options, Session& session, ReplaySource& sou
 
 Scene read_replay_source(const ReplaySource& source, const std::string& scene_file) {
   Scene scene = scene_of(source, scene_file);
-  if (!source.learning.empty()) scene.learning = window_from_words(source.learning, "--learning");
+  if (source.learning == "none") {
+    scene.learning.reset();
+    if (scene.reference) scene.reference->teach = false;
+  } else if (!source.learning.empty()) {
+    scene.learning = window_from_words(source.learning, "--learning");
+  }
   if (!source.evaluation.empty())
     scene.evaluation = window_from_words(source.evaluation, "--evaluation");
   if (!source.rest.empty()) scene.rest = window_from_words(source.rest, "--rest");

@@ -247,4 +247,29 @@ std::optional<double> unit_factor(std::string_view from, std::string_view to) {
   return x->to_si / y->to_si;
 }
 
+namespace {
+
+// What stands behind a number in front: one count of it has the zero of the unit itself.
+std::string without_count(std::string_view text, const Unit& unit) {
+  const auto count = count_unit(text);
+  const auto plain = count ? find_unit(count->unit) : std::nullopt;
+  return plain ? plain->symbol : unit.symbol;
+}
+
+bool is_share(std::string_view symbol) {
+  return symbol == "ppm" || symbol == "ppb";
+}
+
+}  // namespace
+
+std::optional<double> Unit::sample_factor(std::string_view from, std::string_view to) {
+  if (from == to || from.empty() || to.empty()) return 1;
+  const auto x = find_unit(from), y = find_unit(to);
+  if (!x || !y || x->quantity != y->quantity) return std::nullopt;
+  const std::string a = without_count(from, *x), b = without_count(to, *y);
+  if (x->quantity == Quantity::temperature && a != b) return std::nullopt;
+  if (x->quantity == Quantity::concentration && is_share(a) != is_share(b)) return std::nullopt;
+  return x->to_si == y->to_si ? 1 : x->to_si / y->to_si;
+}
+
 }  // namespace libchar

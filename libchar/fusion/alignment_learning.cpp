@@ -1,8 +1,14 @@
 // Learning an alignment. With z the samples as aligned so far and x their mean (blind: its noise is
 // shared by all, and by Gauss-Markov hardly correlated with z - x) or the reference (with a reference):
 //   e_i = z_i - x = b0 + g (x - x0) + sum_k m_k (c_k - c0_k) - d dz_i/dd + noise
-// is solved for each channel, put on top of what is known, and repeated (Gauss-Newton; the delay,
-// whose derivative is that of the interpolated samples, with its second derivative: Newton).
+// is solved for each channel, put on top of what is known, and repeated. Interpolation between two
+// samples smooths white noise, and least squares would be rewarded for half a sample: the equation of
+// the delay is therefore taken with an instrument, the slope of what does not hold the channel's own
+// noise (sum slope e = 0): that of the reference, or of the mean of the other channels. What noise
+// they share with e (blind: their parts of x) is taken out, v_j sum h h' / (n (n - 1)), h the taps of a
+// channel and h' their derivative, v_j by the sixth difference of e.
+// Blind, and where aliased vibration is more than noise (neighbours in e have opposite signs), interpolation
+// is there to damp it: least squares on the own slope and its second derivative (Newton) find the smallest rest.
 // Blind, noise v_i of the channels in x is taken out of both sides (errors in variables):
 //   sum x^2 - rows mean(v)/n,   sum e_i x - rows (v_i - mean(v))/n,   v by MINQUE of the residuals.
 // Delays start from the peak of the correlation below a tenth of the rate. Normal equations of
@@ -18,6 +24,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/aligner.hpp"
 #include "libchar/fusion/detail/alignment_samples.hpp"
 
@@ -34,6 +41,15 @@ constexpr double kSettled = 1e-6;
 constexpr double kSeen = 4;             // power of x over that of its own noise, at least
 constexpr double kLikeEnough = 0.5;     // correlation of the slow parts, at least
 constexpr double kDoubtfulDelay = 0.5;  // samples of standard error
+constexpr double kResolved = 3;         // standard errors that a delay is from zero, at least
+constexpr double kBound =
+    2;  // standard errors beyond what was found, of a delay that is not resolved
+constexpr double kEndOfSearch = 0.5;  // samples: nearer to it a delay is an end, no estimate
+constexpr double kQuarter =
+    0.25;  // samples: where the slope of the interpolator's noise is largest
+constexpr double kMostShared = 0.1;
+constexpr double kVibrates = -0.15;  // correlation of neighbours
+constexpr double kSixth[] = {1, -6, 15, -20, 15, -6, 1};
 constexpr double kUnknownValue = ChannelAlignment::kUnknown;
 
 Refusal refusal(const std::string& what) {
@@ -94,6 +110,8 @@ class Learner {
   Alignment learn() {
     prepare();
     average_cross();
+    find_truth_slope();
+    delays_.vibrates = blind() && options_.delay && vibrates();
     if (options_.delay) start_delays();
     choose_strictness();
     iterate();
@@ -212,7 +230,7 @@ class Learner {
     const auto n = static_cast<Index>(used_.size());
     z_.resize(m_, n);
     slope_.resize(m_, n);
-    bend_.resize(m_, n);
+    delays_.bend.resize(delays_.vibrates ? m_ : 0, n);
     for (Index k = 0; k < n; ++k) {
       const ChannelAlignment& channel = of(static_cast<std::size_t>(k));
       const double* y = raw_.col(used_[static_cast<std::size_t>(k)]).data();
@@ -231,10 +249,31 @@ class Learner {
         if (!moves) continue;
         const double up = later.at(y, 1, m_, t, strict_), down = earlier.at(y, 1, m_, t, strict_);
         slope_(t, k) = (up - down) / (2 * kDelayStep) / (1 + channel.gain);
-        bend_(t, k) = (up - 2 * now + down) / (kDelayStep * kDelayStep) / (1 + channel.gain);
-        if (!std::isfinite(bend_(t, k))) z_(t, k) = kUnknownValue;
+        if (delays_.vibrates)
+          delays_.bend(t, k) =
+              (up - 2 * now + down) / (kDelayStep * kDelayStep) / (1 + channel.gain);
+        if (!std::isfinite(slope_(t, k))) z_(t, k) = kUnknownValue;
       }
     }
+  }
+
+  // Of the reference; nothing where it has values at few instants only.
+  void find_truth_slope() {
+    delays_.truth_slope.resize(0);
+    if (blind() || !options_.delay) return;
+    const Eigen::VectorXd truth = data_.truth.transpose();
+    const DelayTaps later(kDelayStep, options_.interpolation),
+        earlier(-kDelayStep, options_.interpolation);
+    Eigen::VectorXd out = Eigen::VectorXd::Constant(m_, kUnknownValue);
+    Index known = 0, there = 0;
+    for (Index t = 0; t < m_; ++t) {
+      if (!interior_[static_cast<std::size_t>(t)] || !std::isfinite(truth(t))) continue;
+      ++there;
+      out(t) = (later.at(truth.data(), 1, m_, t, true) - earlier.at(truth.data(), 1, m_, t, true)) /
+               (2 * kDelayStep);
+      known += std::isfinite(out(t)) ? 1 : 0;
+    }
+    if (2 * known > there) delays_.truth_slope = out;
   }
 
   void find_rows() {
@@ -242,6 +281,7 @@ class Learner {
     rows_.clear();
     for (Index t = 0; t < m_; ++t)
       if (interior_[static_cast<std::size_t>(t)] && std::isfinite(x_(t)) && z_.row(t).allFinite() &&
+          (delays_.truth_slope.size() == 0 || std::isfinite(delays_.truth_slope(t))) &&
           (further_ == 0 || cross_.row(t).allFinite()))
         rows_.push_back(t);
     const auto rows = static_cast<Index>(rows_.size());
@@ -286,6 +326,7 @@ class Learner {
     find_rows();
     choose_terms();
     regressors_ = regressors();
+    if (needs_white()) find_white();
     std::vector<Eigen::VectorXd> changes;
     Eigen::VectorXd power(static_cast<Index>(used_.size()));
     for (std::size_t k = 0; k < used_.size(); ++k) {
@@ -339,14 +380,19 @@ class Learner {
     ChannelAlignment mean;
     mean.cross.assign(static_cast<std::size_t>(further_), 0);
     const auto n = static_cast<double>(used_.size());
+    double late = 0;
     for (std::size_t k = 0; k < used_.size(); ++k) {
-      mean.delay += of(k).delay / n;
+      if (can_delay_[k]) {
+        mean.delay += of(k).delay;
+        late += 1;
+      }
       mean.bias += of(k).bias / n;
       mean.gain += of(k).gain / n;
       for (std::size_t a = 0; a < mean.cross.size(); ++a) mean.cross[a] += of(k).cross[a] / n;
     }
     for (std::size_t k = 0; k < used_.size(); ++k) {
-      of(k).delay = std::clamp(of(k).delay - mean.delay, -kMostDelay, kMostDelay);
+      if (can_delay_[k])
+        of(k).delay = std::clamp(of(k).delay - mean.delay / late, -kMostDelay, kMostDelay);
       of(k).bias -= mean.bias;
       of(k).gain = (1 + of(k).gain) / (1 + mean.gain) - 1;
       for (std::size_t a = 0; a < mean.cross.size(); ++a) of(k).cross[a] -= mean.cross[a];
@@ -358,6 +404,7 @@ class Learner {
     realign();
     find_rows();
     regressors_ = regressors();
+    if (needs_white()) find_white();
     for (std::size_t k = 0; k < used_.size(); ++k) {
       const Equations system = equations(k);
       const auto count = static_cast<double>(system.all());
@@ -379,19 +426,43 @@ class Learner {
       to.gain_se = gain_ ? scale * se(next++) : kUnknownValue;
       to.cross_se.assign(static_cast<std::size_t>(further_), kUnknownValue);
       for (const Index a : axes_) to.cross_se[static_cast<std::size_t>(a)] = scale * se(next++);
-      to.delay_se = can_delay_[k] ? se(next) : kUnknownValue;
+      to.delay_se = can_delay_[k] && outweighs_noise(system) ? se(next) : kUnknownValue;
     }
   }
 
-  // A delay that is known to no better than half a sample is none.
+  bool needs_white() const {
+    return delays_.truth_slope.size() == 0 && !delays_.vibrates &&
+           std::find(can_delay_.begin(), can_delay_.end(), true) != can_delay_.end();
+  }
+
+  enum class Delay { resolved, within_its_error, unknown, end };
+
+  Delay delay_of(std::size_t k) const {
+    const ChannelAlignment& channel = out_.channels[static_cast<std::size_t>(used_[k])];
+    if (std::abs(channel.delay) > kMostDelay - kEndOfSearch) return Delay::end;
+    if (!(channel.delay_se > 0 && channel.delay_se < kDoubtfulDelay)) return Delay::unknown;
+    return std::abs(channel.delay) > kResolved * channel.delay_se ? Delay::resolved
+                                                                  : Delay::within_its_error;
+  }
+
+  // A delay that is known to no better than half a sample is none, nor one that is not resolved from zero, nor the end
+  // of the search. Blind, delays are differences: those that are within their errors go together, or stay.
   bool doubt_delays() {
-    bool doubted = false;
+    bool doubted = false, any = false;
     for (std::size_t k = 0; k < used_.size(); ++k)
-      if (can_delay_[k] && !(of(k).delay_se < kDoubtfulDelay)) {
-        can_delay_[k] = false;
-        of(k).delay = 0;
-        doubted = true;
-      }
+      any = any || (can_delay_[k] && delay_of(k) == Delay::resolved);
+    for (std::size_t k = 0; k < used_.size(); ++k) {
+      if (!can_delay_[k]) continue;
+      ChannelAlignment& channel = of(k);
+      const Delay is = delay_of(k);
+      if (is == Delay::resolved || (is == Delay::within_its_error && blind() && any)) continue;
+      if (is == Delay::end) ++delays_.ends;
+      if (is == Delay::within_its_error)
+        delays_.bounds.push_back(std::abs(channel.delay) + kBound * channel.delay_se);
+      can_delay_[k] = false;
+      channel.delay = 0;
+      doubted = true;
+    }
     return doubted;
   }
 
@@ -399,10 +470,25 @@ class Learner {
     const auto note = [&](const std::string& text) { out_.notes.push_back(text); };
     std::size_t still = 0;
     for (std::size_t k = 0; k < used_.size(); ++k) still += can_delay_[k] ? 0 : 1;
+    still -= std::min(still, delays_.bounds.size() + delays_.ends);
     if (options_.delay && still > 0)
       note(fmt::format("the stretch does not tell the delay of {} of {} sensors: left at zero",
                        still,
                        used_.size()));
+    if (!delays_.bounds.empty())
+      note(fmt::format(
+          "the delay of {} of {} sensors is not resolved from zero, and is at most "
+          "{} samples (95 %)",
+          delays_.bounds.size(),
+          used_.size(),
+          brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
+    if (delays_.ends > 0)
+      note(
+          fmt::format("the delay of {} of {} sensors may be beyond the {} samples that are "
+                      "searched: left at zero",
+                      delays_.ends,
+                      used_.size(),
+                      kMostDelay));
     if (options_.gain && !gain_)
       note("the input hardly moves within the stretch: gains are left at one");
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
@@ -421,32 +507,164 @@ class Learner {
 
   Equations equations(std::size_t k) {
     const auto column = static_cast<Index>(k);
-    const Eigen::VectorXd e = z_(rows_, column) - x_(rows_), left_over = linear_residual(k);
+    const Eigen::VectorXd e = z_(rows_, column) - x_(rows_);
     const Index linear = terms(), all = linear + (can_delay_[k] ? 1 : 0);
-    Eigen::VectorXd slope, bend;
-    bool curved = false;
+    Eigen::VectorXd slope, lead;
     if (can_delay_[k]) {
       slope = slope_(rows_, column);
-      bend = bend_(rows_, column);
-      const double steep = slope.squaredNorm();
-      curved = steep + left_over.dot(bend) > 0.05 * steep;
+      lead = instrument(column);
     }
     Equations out;
     const auto rows = static_cast<Index>(rows_.size());
     for (std::size_t b = 0; b < batches_; ++b) {
       const Index from = rows * static_cast<Index>(b) / static_cast<Index>(batches_);
       const Index size = rows * static_cast<Index>(b + 1) / static_cast<Index>(batches_) - from;
-      Eigen::MatrixXd part(size, all);
-      part.leftCols(linear) = regressors_.middleRows(from, size);
-      if (can_delay_[k]) part.col(linear) = -slope.segment(from, size);
-      out.left.push_back(part.transpose() * part);
-      out.right.push_back(part.transpose() * e.segment(from, size));
-      if (curved)
-        out.left.back()(linear, linear) +=
-            left_over.segment(from, size).dot(bend.segment(from, size));
+      Eigen::MatrixXd part(size, all), with(size, all);
+      part.leftCols(linear) = with.leftCols(linear) = regressors_.middleRows(from, size);
+      if (can_delay_[k]) {
+        part.col(linear) = -slope.segment(from, size);
+        with.col(linear) = -lead.segment(from, size);
+      }
+      out.left.push_back(with.transpose() * part);
+      out.right.push_back(with.transpose() * e.segment(from, size));
     }
     correct_for_noise(k, out);
+    if (can_delay_[k] && delays_.vibrates) bend_delay(k, slope, out);
+    if (can_delay_[k] && !delays_.vibrates) correct_delay(column, out);
     return out;
+  }
+
+  // What the slope of a channel's own interpolation is replaced by.
+  Eigen::VectorXd instrument(Index column) const {
+    if (delays_.truth_slope.size() > 0) return delays_.truth_slope(rows_);
+    if (!blind() || delays_.vibrates) return slope_(rows_, column);
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Index>(rows_.size()));
+    for (Index k = 0; k < z_.cols(); ++k)
+      if (k != column) out += slope_(rows_, k);
+    return out / static_cast<double>(z_.cols() - 1);
+  }
+
+  // Neighbouring samples of what the channels differ by have opposite signs: aliased vibration, of which there is more
+  // than white noise.
+  bool vibrates() const {
+    const auto n = static_cast<Index>(used_.size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(m_);
+    for (const Index i : used_) mean += raw_.col(i) / static_cast<double>(n);
+    double sum = 0;
+    for (const Index i : used_) sum += neighbours(raw_.col(i) - mean);
+    return sum < kVibrates * static_cast<double>(n);
+  }
+
+  static double neighbours(const Eigen::VectorXd& e) {
+    return correlation(e.tail(e.size() - 1), e.head(e.size() - 1), 0);
+  }
+
+  // Where vibration is damped by interpolation the best delay is that of the smallest rest: Newton, by its curvature.
+  void bend_delay(std::size_t k, const Eigen::VectorXd& slope, Equations& to) const {
+    const Eigen::VectorXd left_over = linear_residual(k),
+                          bend = delays_.bend(rows_, static_cast<Index>(k));
+    const double steep = slope.squaredNorm();
+    if (!(steep + left_over.dot(bend) > 0.05 * steep)) return;
+    const auto rows = static_cast<Index>(rows_.size());
+    for (std::size_t b = 0; b < batches_; ++b) {
+      const Index from = rows * static_cast<Index>(b) / static_cast<Index>(batches_);
+      const Index size = rows * static_cast<Index>(b + 1) / static_cast<Index>(batches_) - from;
+      to.left[b].bottomRightCorner(1, 1).array() +=
+          left_over.segment(from, size).dot(bend.segment(from, size));
+    }
+  }
+
+  // Noise that the instrument shares with e, on the right, and with the slope, on the left.
+  void correct_delay(Index column, Equations& to) const {
+    if (delays_.truth_slope.size() > 0) return;
+    const auto n = static_cast<double>(used_.size());
+    double right = 0, left = 0;
+    if (blind()) {
+      for (Index k = 0; k < z_.cols(); ++k)
+        if (k != column) right -= delays_.white(k) * noise_gain(k).along / (n * (n - 1));
+    } else {
+      right = delays_.white(column) * noise_gain(column).along;
+      left = -delays_.white(column) * noise_gain(column).slopes;
+    }
+    for (std::size_t b = 0; b < to.left.size(); ++b) {
+      const double rows = to.left[b](0, 0);
+      to.right[b].tail(1).array() += rows * right;
+      to.left[b].bottomRightCorner(1, 1).array() += rows * left;
+    }
+  }
+
+  // Blind, on slow motion: what is taken out for shared noise must be small beside what the slopes say.
+  bool outweighs_noise(const Equations& system) const {
+    if (!blind() || delays_.vibrates) return true;
+    const auto n = static_cast<double>(used_.size());
+    double says = 0, rows = 0;
+    for (const Eigen::MatrixXd& left : system.left) {
+      says += left(left.rows() - 1, left.cols() - 1);
+      rows += left(0, 0);
+    }
+    const double shared =
+        delays_.white.sum() * std::abs(noise_gain(kQuarter).along) / (n * (n - 1));
+    return says > 0 && rows * shared < kMostShared * says;
+  }
+
+  struct NoiseGain {
+    double along = 0;   // of white noise: between interpolated samples and their slope
+    double slopes = 0;  // of the slope
+    double sixth = 0;   // of the sixth difference of interpolated samples
+  };
+
+  NoiseGain noise_gain(Index k) const {
+    return noise_gain(
+        out_.channels[static_cast<std::size_t>(used_[static_cast<std::size_t>(k)])].delay);
+  }
+
+  NoiseGain noise_gain(double delay) const {
+    const std::ptrdiff_t origin = static_cast<std::ptrdiff_t>(std::floor(delay)) - 16;
+    const auto spread = [&](double at) {
+      const DelayTaps taps(at, options_.interpolation);
+      Eigen::VectorXd out = Eigen::VectorXd::Zero(32);
+      for (std::size_t w = 0; w < taps.weights.size(); ++w)
+        out(taps.floor + taps.first + static_cast<std::ptrdiff_t>(w) - origin) = taps.weights[w];
+      return out;
+    };
+    const Eigen::VectorXd now = spread(delay);
+    const Eigen::VectorXd slope =
+        (spread(delay + kDelayStep) - spread(delay - kDelayStep)) / (2 * kDelayStep);
+    NoiseGain out{now.dot(slope), slope.squaredNorm(), 0};
+    for (Index at = -6; at < now.size(); ++at) {
+      double sum = 0;
+      for (Index j = 0; j < 7; ++j)
+        if (at + j >= 0 && at + j < now.size()) sum += kSixth[j] * now(at + j);
+      out.sixth += sum * sum;
+    }
+    return out;
+  }
+
+  // White noise of each channel, from what the sixth difference leaves of e; blind by MINQUE, as all are in x.
+  void find_white() {
+    const auto n = static_cast<Index>(used_.size());
+    Eigen::VectorXd power = Eigen::VectorXd::Zero(n);
+    for (Index k = 0; k < n; ++k) {
+      const Eigen::VectorXd e = z_.col(k) - x_;
+      double count = 0;
+      for (Index t = 0; t + 6 < m_; ++t) {
+        if (!interior_[static_cast<std::size_t>(t)] || !interior_[static_cast<std::size_t>(t + 6)])
+          continue;
+        double d = 0;
+        for (Index j = 0; j < 7; ++j) d += kSixth[j] * e(t + j);
+        if (std::isfinite(d)) power(k) += d * d, count += 1;
+      }
+      power(k) = count > 0 ? power(k) / count : 0;
+    }
+    const auto all = static_cast<double>(n);
+    if (blind()) {
+      const double sum = power.sum() * all / (all - 1);
+      power = n > 2
+                  ? Eigen::VectorXd(((power.array() - sum / (all * all)) / (1 - 2 / all)).max(0.0))
+                  : Eigen::VectorXd::Constant(n, sum / all);
+    }
+    delays_.white.resize(n);
+    for (Index k = 0; k < n; ++k) delays_.white(k) = power(k) / noise_gain(k).sixth;
   }
 
   void correct_for_noise(std::size_t k, Equations& to) const {
@@ -490,11 +708,19 @@ class Learner {
   Index n_, further_, m_;
   Alignment out_;
   std::vector<Index> used_;
-  std::vector<bool> can_delay_;       // of `used_`
-  std::vector<bool> interior_;        // of instants
-  Eigen::MatrixXd raw_, cross_;       // a column a channel, an axis
-  Eigen::MatrixXd z_, slope_, bend_;  // a column a used channel: aligned, and its derivatives
+  std::vector<bool> can_delay_;  // of `used_`
+  std::vector<bool> interior_;   // of instants
+  Eigen::MatrixXd raw_, cross_;  // a column a channel, an axis
+  Eigen::MatrixXd z_, slope_;    // a column a used channel: aligned, and its derivative
   Eigen::VectorXd x_, residual_power_;
+  struct {
+    bool vibrates = false;        // more than it is noisy
+    Eigen::MatrixXd bend;         // second derivative of z_, where it vibrates
+    Eigen::VectorXd truth_slope;  // empty: the reference does not tell it
+    Eigen::VectorXd white;        // variance of the white noise of a used channel
+    std::vector<double> bounds;   // of delays that are not resolved, in samples
+    std::size_t ends = 0;         // delays at the end of the search
+  } delays_;
   std::vector<Index> rows_;
   bool strict_ = true;  // samples whose interpolation misses a tap are left out
   bool gain_ = false;   // terms that the stretch tells

@@ -1,6 +1,6 @@
 // RMSE = sqrt(sum e^2 / n). ln RMSE is half the logarithm of a mean of squares, so a cell of n_k samples moves it by
 //   z_k = (sum e^2 - n_k RMSE^2) K / (2 n RMSE^2),   the mean of z over the K cells is 0;
-// how well that mean is known (detail/mean_uncertainty.hpp) is how well ln RMSE is. For ratios it
+// how well that mean is known (detail/judge/mean_uncertainty.hpp) is how well ln RMSE is. For ratios it
 // is the difference of two such series: what both errors have in common cancels.
 #include "libchar/replay/error_meter.hpp"
 
@@ -9,7 +9,7 @@
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/distributions.hpp"
-#include "libchar/replay/detail/mean_uncertainty.hpp"
+#include "libchar/replay/detail/judge/mean_uncertainty.hpp"
 
 namespace libchar {
 namespace {

@@ -45,13 +45,6 @@ std::vector<Channel> channels_of(const std::string& log, ReadOptions reading, Pr
   return head.channels;
 }
 
-// Two spellings of one unit are one unit; nothing said is no contradiction.
-bool same_unit(const std::string& a, const std::string& b) {
-  if (a == b || a.empty() || b.empty()) return true;
-  const auto one = find_unit(a), other = find_unit(b);
-  return one && other && one->quantity == other->quantity && one->to_si == other->to_si;
-}
-
 const LearntAlgorithm& algorithm_to_apply(const LearntFusion& learnt, const FuseOptions& options) {
   const std::string& label = options.algorithm.empty() ? learnt.recommended : options.algorithm;
   if (label.empty())
@@ -186,20 +179,14 @@ std::string Fusing::channel_of(const LearntSensor& sensor) const {
 double Fusing::to_recorded(const LearntSensor& sensor, const Channel& channel) const {
   const bool as_read = dressed_ || !sensor.cross.empty() || channel.stated.empty();
   const std::string& unit = as_read ? channel.unit : channel.stated;
-  if (same_unit(sensor.recorded_unit, unit)) return 1;
-  const auto from = find_unit(unit), to = find_unit(sensor.recorded_unit);
-  const bool scales = from && to && from->quantity == to->quantity &&
-                      from->quantity != Quantity::temperature &&
-                      from->quantity != Quantity::concentration;
-  if (!scales)
-    throw input_error("E0936", log_)
-        .says("channel {} is in another unit than that of sensor {}, {}",
-              printable(channel.name, 40),
-              printable(sensor.name, 40),
-              sensor.recorded_unit)
-        .got(unit)
-        .hint("convert the log, or say with `units` what the channels are in");
-  return from->to_si / to->to_si;
+  if (const auto factor = Unit::sample_factor(unit, sensor.recorded_unit)) return *factor;
+  throw input_error("E0936", log_)
+      .says("channel {} is in another unit than that of sensor {}, {}",
+            printable(channel.name, 40),
+            printable(sensor.name, 40),
+            sensor.recorded_unit)
+      .got(unit)
+      .hint("convert the log, or say with `units` what the channels are in");
 }
 
 // A sensor that the log does not have.

@@ -17,9 +17,10 @@
 #include "libchar/replay/detail/align/alignment_stage.hpp"
 #include "libchar/replay/detail/align/lag.hpp"
 #include "libchar/replay/detail/blind_run.hpp"
-#include "libchar/replay/detail/judgement.hpp"
+#include "libchar/replay/detail/detection_sweep.hpp"
+#include "libchar/replay/detail/judge/judgement.hpp"
+#include "libchar/replay/detail/judge/partial_scores.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
-#include "libchar/replay/detail/partial_scores.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan/copied_sensors.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
@@ -44,7 +45,7 @@ struct SensorMeter {
 
 class Replay {
  public:
-  Replay(const Scene& scene,
+  Replay(Scene& scene,
          const ReplayOptions& options,
          Progress& progress,
          const ReplayWorkspace& workspace)
@@ -59,6 +60,9 @@ class Replay {
     passes_ += scene.rest ? 1 : 0;
     instants_.set_offsets(knowledge_.offsets);
     plan_ = make_plan(scene, options, instants_, knowledge_);
+    // Too short to teach and to be judged.
+    if (scene.align && scene.align->choose && plan_.learn_to <= plan_.learn_from)
+      scene.align.reset();
     if (scene.reference && scene.reference->estimate_offset) estimate_offset();
   }
 
@@ -84,6 +88,10 @@ class Replay {
 
  private:
   void estimate_lag() {
+    if (instants_.info().slow_reference) {  // with what its values stand for
+      lag_s_ = instants_.lag_s();
+      return;
+    }
     PassProgress passing(progress_, "estimating the lag");
     const TimeWindow all;
     lag_s_ = find_lag(scene_,
@@ -115,8 +123,20 @@ class Replay {
   // Before anything is learnt or fused.
   void align() {
     PassProgress passing(progress_, "aligning");
-    alignment_ = learn_scene_alignment(scene_, plan_, instants_, passing);
+    std::vector<AlignmentResult::Trial> trials;
+    if (scene_.align->choose) {
+      ++passes_;
+      trials = choose_scene_terms(scene_, plan_, instants_, passing);
+    }
+    try {
+      alignment_ = learn_scene_alignment(scene_, plan_, instants_, passing);
+    } catch (const Error& error) {
+      // Nobody asked for terms that cannot be learnt here.
+      if (!scene_.align->choose || error.problem().kind != ErrorKind::numeric) throw;
+      return scene_.align.reset();
+    }
     aligned_ = measure_alignment(scene_, plan_, instants_, *alignment_, plan_.warnings, passing);
+    aligned_->trials = std::move(trials);
     passes_ += 2;
     if (scene_.align->apply) instants_.set_alignment(&*alignment_);
   }
@@ -129,6 +149,7 @@ class Replay {
     frame_.start_s =
         instants_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
     frame_.scored_from_s = frame_.start_s + static_cast<double>(plan_.warm_up) / frame_.rate_hz;
+    frame_.instants = plan_.run_to - plan_.run_from;
     frame_.output_scale = instants_.info().output_scale;
     frame_.tilt = scene_.tilt.has_value();
     frame_.allan = (options_.allan || options_.no_skip) && instants_.info().has_reference;
@@ -367,10 +388,11 @@ class Replay {
                 const ReplayResult& so_far,
                 const ScoreOptions& scoring) const;
   std::vector<Meters> add_algorithms(ReplayResult& out, const ScoreOptions& scoring) const;
+  std::vector<double> costs() const;
   void add_tracks(ReplayResult& out) const;
   SensorResult sensor_result(std::size_t i, const ScoreOptions& scoring) const;
 
-  const Scene& scene_;
+  Scene& scene_;  // its alignment is chosen here
   const ReplayOptions& options_;
   const ReplayWorkspace workspace_;
   Progress& progress_;
@@ -505,6 +527,15 @@ std::vector<Meters> Replay::add_algorithms(ReplayResult& out, const ScoreOptions
   return meters;
 }
 
+// Declared, never measured: what is recommended does not depend on a clock.
+std::vector<double> Replay::costs() const {
+  const fusion::Array live = subset(plan_.array, plan_.live);
+  std::vector<double> out;
+  for (const PlannedAlgorithm& algorithm : plan_.algorithms)
+    if (algorithm.asked) out.push_back(algorithm.entry->cost_ns(live, algorithm.settings));
+  return out;
+}
+
 // Of the method that one would use: the best, or else the first in the order.
 void Replay::add_tracks(ReplayResult& out) const {
   const AlgorithmResult* shown = out.best ? &out.algorithms[*out.best] : nullptr;
@@ -547,7 +578,7 @@ ReplayResult Replay::collect() {
   for (const SensorMeter& meter : sensors_)
     healthy_rms.push_back(std::sqrt(meter.healthy_squares / meter.healthy_samples));
   judge_optimum(out, optimum_, healthy_rms, plan_.array);
-  judge_best(out, meters, scoring);
+  judge_best(out, meters, costs(), scoring);
   Meters single;
   for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
   judge_best_sensor(out, meters, single, scoring);
@@ -570,7 +601,8 @@ ReplayResult Replay::collect() {
 std::vector<std::string> explain_replay(const Scene& scene,
                                         const ReplayOptions& options,
                                         Progress& progress) {
-  return Replay(scene, options, progress, {}).explain();
+  Scene own = taught(scene, options);
+  return Replay(own, options, progress, {}).explain();
 }
 
 namespace {
@@ -591,7 +623,8 @@ ReplayResult replay(const Scene& scene,
                     const ReplayWorkspace& workspace) {
   const auto start = std::chrono::steady_clock::now();
   const WorkMeter work;
-  ReplayResult out = Replay(scene, options, progress, workspace).run();
+  Scene own = taught(scene, options);
+  ReplayResult out = Replay(own, options, progress, workspace).run();
   count_work(WorkKind::learnt_instants, out.work.learnt);
   count_work(WorkKind::fused_instants, out.work.steps);
   count_work(WorkKind::blind_instants, out.work.blind_steps);

@@ -17,8 +17,10 @@ namespace libchar {
 struct ReplayOptions {
   std::vector<SceneAlgorithm> algorithms;          ///< win over the scene's list; `line` 0
   std::optional<TimeWindow> learning, evaluation;  ///< win over the scene's
-  double window_s = 0;                             ///< of the window RMS; 0: a fiftieth of the run
-  bool allan = true;                               ///< Allan deviation of each error
+  bool published =
+      false;  ///< where no list says what runs: also the forms of the sources, beside the mended ones
+  double window_s = 0;   ///< of the window RMS; 0: a fiftieth of the run
+  bool allan = true;     ///< Allan deviation of each error
   bool no_skip = false;  ///< do all work, whether an output needs it or not: same numbers
   /// processor time that leave-one-out of one algorithm may take, by the declared cost of its steps; beyond it runs on
   /// stretches of the evaluation, or not at all. Infinite: no limit

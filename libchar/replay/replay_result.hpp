@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
@@ -80,6 +81,15 @@ struct SensorResult {
 
 /// What was learnt of the sensors before fusion, and what their errors are made of on the run.
 struct AlignmentResult {
+  /// A term of the alignment that was tried: errors on halves of the learning window, each taught by the other.
+  struct Trial {
+    std::string term;  ///< "bias", "delay", "delay, cubic", "gain", "misalignment"; "": as recorded
+    double rmse =
+        0;  ///< of weights learnt on the other half, with it and with the terms that were kept before
+    double of_mean = 0;  ///< of the plain mean
+    bool kept = false;
+  };
+
   fusion::Alignment learnt;
   TimeWindow window;          ///< it was learnt on
   bool by_reference = false;  ///< by the reference; else by the sensors' mean
@@ -87,6 +97,7 @@ struct AlignmentResult {
   bool overlaps = false;  ///< learnt on a part of what is judged
   fusion::ErrorBudget budget;
   std::vector<std::size_t> budgeted;  ///< sensors in the budget
+  std::vector<Trial> trials;          ///< where the terms were chosen; the first is without any
 };
 
 /// By how much the reference reads more than the sensors, as it was found; in the unit of the input.
@@ -158,9 +169,9 @@ struct AlgorithmResult {
   double learning_s = 0;     ///< making it and its learning, CPU of one core
   std::optional<std::uint64_t> peak_bytes;  ///< of heap, over learning and run; none: not measured
 
-  /// at the end: of each input, one per sensor; empty: not known
+  /// of each input, one per sensor: medians over the run, of several inputs those at its end; empty: not known
   std::vector<std::vector<double>> weights;
-  std::vector<double> variances;  ///< at the end, one per sensor; empty: not known
+  std::vector<double> variances;  ///< medians over the run, one per sensor; empty: not known
   double weight_distance =
       0;  ///< RMS over time of |w - optimal weights| (Euclid), one input; NaN: unknown
   double variance_error =
@@ -204,7 +215,9 @@ struct ReplayFacts {
   std::vector<InputResult> inputs;
   /// by `false_alarm_s`; empty: no fault is known, or no algorithm that runs has the detector
   std::vector<DetectionAt> detection;
-  /// the 95 % interval of the best method's RMSE over that of the best sensor; one input and a reference
+  /// label of the best method in whose estimates several sensors have a part; "": none has a score
+  std::string best_fusion;
+  /// the 95 % interval of its RMSE over that of the best sensor; one input and a reference
   std::optional<Interval> best_over_sensor;
   /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen
   bool offsets_decide = false;
@@ -233,6 +246,13 @@ struct ReplayResult : ReplayFacts {
   ReplayWork work;
   WorkDone counted{};  ///< all of it
   double seconds = 0;  ///< measured
+
+  /// By its label; null: there is none.
+  const AlgorithmResult* find(std::string_view label) const {
+    for (const AlgorithmResult& a : algorithms)
+      if (a.label == label) return &a;
+    return nullptr;
+  }
 };
 
 }  // namespace libchar

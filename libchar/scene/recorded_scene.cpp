@@ -61,12 +61,6 @@ struct Chosen {
   std::vector<std::string> sensors, reference;
 };
 
-// Spelled otherwise is the same unit.
-bool same_unit(const std::string& a, const std::string& b) {
-  const bool known = find_unit(a) && find_unit(b);
-  return a == b || (known && unit_factor(a, b) == 1);
-}
-
 // Names first: a pattern for the sensors leaves the reference out.
 Chosen choose_columns(const SensorRecording& r) {
   Chosen out;
@@ -105,7 +99,7 @@ std::vector<Channel> channels_of(const std::string& file,
   return out;
 }
 
-// Where two channels say their units, they say one.
+// Where two channels say their units, one is converted to the other (a replay does it) or they are refused.
 void check_units(const SensorRecording& r, const Chosen& chosen) {
   std::vector<std::string> here = chosen.sensors;
   if (r.reference_file.empty())
@@ -116,9 +110,9 @@ void check_units(const SensorRecording& r, const Chosen& chosen) {
       all.push_back(std::move(channel));
   std::erase_if(all, [](const Channel& channel) { return channel.unit.empty(); });
   for (const Channel& channel : all)
-    if (!same_unit(all[0].unit, channel.unit))
+    if (!Unit::sample_factor(channel.unit, all[0].unit))
       throw usage_error("E0749", r.file)
-          .says("{} is in {}, and {} in {}: they are not one quantity in one unit",
+          .says("{} is in {}, and {} in {}: they are not one quantity",
                 printable(all[0].name, 40),
                 printable(all[0].unit, 40),
                 printable(channel.name, 40),

@@ -48,6 +48,14 @@ struct SceneReference {
   bool estimate_lag = false;
   double offset = 0;             ///< it reads so much more than the sensors; in its own unit
   bool estimate_offset = false;  ///< found in the learning window, else in the evaluation
+  /// A mean over the interval behind the stamp, in front of it or around it; the value at the stamp.
+  static constexpr std::string_view kReadings[] = {
+      "mean_after", "mean_before", "mean_centred", "instant"};
+  /// What the values of one that is slower than the sensors stand for: of kReadings, or estimate.
+  std::string samples = "estimate";
+  /// false: nothing is learnt from it unless a window is said; else the first half of a recording teaches where
+  /// neither windows nor an alignment are.
+  bool teach = true;
 };
 
 /// What all sensors and the reference go through alike, before anything is learnt or fused.
@@ -67,6 +75,8 @@ struct SceneAlign {
   std::vector<std::string> terms;    ///< of kAlignTerms; empty: all (bias only without `rest`)
   std::string by;                    ///< reference, sensors; empty: the reference if there is one
   std::string interpolation = "sinc";
+  bool choose =
+      false;  ///< terms are tried one by one and taken where they pay on the other half of the window
   bool apply = true;  ///< false: the error budget alone, algorithms see the samples as recorded
 };
 inline constexpr std::string_view kAlignTerms[] = {"delay", "bias", "gain", "misalignment"};

@@ -57,6 +57,10 @@ SceneAlign align_of(const MapReader& top, const Scene& scene) {
   }
   if (align.by == "reference" && !scene.reference)
     throw scene_refusal("E0748", at, "by").says("the scene has no reference").hint("by: sensors");
+  if (align.choose && (!scene.reference || align.by == "sensors"))
+    throw scene_refusal("E0748", at, "choose")
+        .says("a reference judges what pays")
+        .hint("terms: […] without one");
   if (scene.tilt)
     throw scene_refusal("E0748", top, "align")
         .says("the sensors of a tilt measure different quantities");

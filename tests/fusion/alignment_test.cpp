@@ -311,3 +311,27 @@ TEST_CASE("error budget: a delay that jitters follows the slope, and is told fro
   for (const fusion::ChannelBudget& c : budget.channels)
     CHECK(c.parts[4].share == Approx(jitter / (jitter + 1e-4)).margin(0.1));
 }
+
+TEST_CASE("alignment: sensors without a delay are not given one by the smoothing of their noise") {
+  for (const bool blind : {false, true})
+    for (const auto interpolation : {fusion::Interpolation::sinc, fusion::Interpolation::cubic})
+      for (const double rate : {0.0005, 0.004, 0.03}) {
+        INFO(blind << " " << rate);
+        test::Gaussian gauss(31);
+        AlignmentData data;
+        data.channels = 3;
+        data.samples.resize(3, 9000);
+        data.starts = {0};
+        if (!blind) data.truth.resize(9000);
+        for (Eigen::Index t = 0; t < 9000; ++t) {
+          const double x = 2 * std::sin(2 * std::numbers::pi * rate * static_cast<double>(t));
+          for (Eigen::Index i = 0; i < 3; ++i) data.samples(i, t) = x + 0.1 * gauss();
+          if (!blind) data.truth(t) = x;
+        }
+        AlignmentOptions options;
+        options.interpolation = interpolation;
+        const Alignment learnt = fusion::learn_alignment(data, options);
+        for (const fusion::ChannelAlignment& channel : learnt.channels)
+          CHECK(std::abs(channel.delay) <= (channel.delay_se > 0 ? 4 * channel.delay_se : 0.0));
+      }
+}

@@ -8,7 +8,9 @@
 #include "libchar/report/json/replay_json.hpp"
 #include "libchar/report/replay/replay_text.hpp"
 #include "libchar/scene/text/scene_writer.hpp"
+#include "tests/replay/kept_columns.hpp"
 #include "tests/replay/scene_text.hpp"
+#include "tests/support/noise.hpp"
 
 using namespace libchar;
 
@@ -119,4 +121,43 @@ TEST_CASE(
   CHECK(replay_markdown(result).find("## Error budget") != std::string::npos);
   const std::string written = scene_yaml(result.scene);
   CHECK(scene_yaml(bench.bench.read(written, "again.yaml")) == written);
+}
+
+TEST_CASE(
+    "align: weights are those of the run, and instants where delayed sensors have ended are cut") {
+  test::SceneBench bench;
+  std::string text = "t[s],a,b,c,x\n";
+  test::Gaussian gauss(3);
+  const auto motion = [](double t) { return std::sin(0.04 * t) + 2 * std::sin(0.011 * t + 1); };
+  for (int k = 0; k < 6000; ++k)
+    text += fmt::format("{},{},{},{},{}\n",
+                        0.01 * k,
+                        motion(k - 5.4) + 0.01 * gauss(),
+                        motion(k + 1.3) + 0.02 * gauss(),
+                        motion(k) + 0.1 * gauss(),
+                        motion(k));
+  bench.put("log.csv", text);
+  const Scene scene = bench.read(
+      "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b, c]\nreference: x\n"
+      "align: {learn: [0, 20]}\nalgorithms: [minque, mean, best-axes]\nlearning: [0, 20]\n"
+      "evaluation: [20, end]\n");
+  KeptColumns kept;
+  ReplayWorkspace workspace;
+  workspace.estimates = &kept;
+  const ReplayResult result = replay(scene, {}, no_progress(), workspace);
+  for (const AlgorithmResult& a : result.algorithms) {
+    if (a.weights.empty()) continue;
+    CHECK(a.weights[0][0] + a.weights[0][1] + a.weights[0][2] == Approx(1).epsilon(1e-12));
+    if (a.label == "minque") {
+      CHECK(a.weights[0][0] == Approx(0.72).margin(0.08));
+      CHECK(a.weights[0][2] == Approx(0.008).margin(0.005));
+    }
+    CHECK(a.faults.empty());
+  }
+  // Samples of the first sensor end 5.4 instants before those of the third: no estimate by fewer.
+  const std::vector<double>& mean = kept.of("mean");
+  const auto last = [&](std::size_t back) { return mean[mean.size() - back]; };
+  for (std::size_t back = 1; back <= 6; ++back) CHECK(std::isnan(last(back)));
+  CHECK(std::isfinite(last(7)));
+  CHECK(result.algorithms[1].availability > 0.998);
 }

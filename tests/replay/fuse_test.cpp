@@ -66,7 +66,9 @@ struct FuseBench {
     const Scene read = bench.read(scene);
     ReplayWorkspace workspace;
     workspace.estimates = &replayed;
-    result = replay(read, {}, no_progress(), workspace);
+    ReplayOptions options;
+    options.published = true;
+    result = replay(read, options, no_progress(), workspace);
     learnt = parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml");
   }
   FuseResult fuse_log(KeptColumns& kept,
@@ -108,7 +110,7 @@ FuseOptions by(const std::string& label) {
 TEST_CASE("fuse: the log that it was learnt from gives the replay's estimates, bit for bit") {
   const std::string all =
       "sensors:\n"
-      "  - {name: a, noise: 0.02}\n  - {name: b, noise: 0.02, scale: 0.5, unit: rev}\n"
+      "  - {name: a, noise: 0.02}\n  - {name: b, noise: 0.02, scale: 0.5, unit: deg/s}\n"
       "  - {name: c, noise: 0.02}\n  - {name: d, noise: 0.06}\n";
   const std::string head = "format: scene\nversion: 1\nrecording: log.csv\n";
   const std::string aligned = GENERATE(std::string(),
@@ -150,11 +152,11 @@ TEST_CASE("fuse: rest, several inputs and a tilt as the replay has them") {
   SECTION("units that the scene says in place of the log") {
     const FuseBench bench(
         "format: scene\nversion: 1\nrecording: {file: log.csv, units: [rad/s]}\n"
-        "sensors: [{name: a, scale: 2, unit: m}, b, c]\n");
+        "sensors: [{name: a, scale: 2, unit: rad/s}, b, c]\n");
     KeptColumns kept;
     const FuseResult fused = bench.fuse_log(kept, by("mean"));
     CHECK(differences(kept.columns[0], bench.replayed.of("mean")) == 0);
-    CHECK(fused.sensors[0].unit == "m");
+    CHECK(fused.sensors[0].unit == "rad/s");
     CHECK(fused.sensors[1].unit == "rad/s");
   }
   SECTION("trends and filters run over the new log") {
@@ -217,8 +219,8 @@ TEST_CASE("fuse: a new log, its deviations and flags") {
   CHECK(kept.columns[2][100] == 1);
   CHECK(kept.columns[2][5000] == 0);
   CHECK(std::isnan(kept.columns[5][20]));
-  // Read between two samples, a gap takes either with it; and so does the end of the log.
-  CHECK(fused.sensors[3].missing == 2 * 113 + 1);
+  // It is not late and read at its own samples; at the end of the log another sensor is late.
+  CHECK(fused.sensors[3].missing == 113 + 1);
   CHECK(fused.deviations > 5900);
 }
 

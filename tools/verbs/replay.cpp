@@ -42,7 +42,7 @@ struct ReplayVerb {
   std::string folder, estimates, scene_file;
   std::vector<std::string> algorithms, settings, sweeps;
   bool explain = false, list = false, force = false, json = false, no_allan = false,
-       no_skip = false, no_timing = false;
+       no_skip = false, no_timing = false, published = false;
   std::optional<double> window_s, budget_s;
 };
 
@@ -60,6 +60,14 @@ void set_option(const std::string& text, std::vector<SceneAlgorithm>& algorithms
   algorithms = swept({setting}, algorithms);
 }
 
+// Does a setting or a sweep name it?
+bool named(const ReplayVerb& verb, std::string_view algorithm) {
+  const std::string front = std::string(algorithm) + ".";
+  const auto of_it = [&](const std::string& text) { return text.starts_with(front); };
+  return std::any_of(verb.settings.begin(), verb.settings.end(), of_it) ||
+         std::any_of(verb.sweeps.begin(), verb.sweeps.end(), of_it);
+}
+
 // What the command line says on top of the scene. Empty: the scene's list as it is.
 std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
   std::vector<SceneAlgorithm> out;
@@ -71,7 +79,9 @@ std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
   if (out.empty()) out = scene.algorithms;
   if (out.empty())
     for (const fusion::Entry& entry : fusion::algorithms())
-      out.push_back({std::string(entry.description->name), {}, 0, 0});
+      if (!entry.description->as_published || verb.published ||
+          named(verb, entry.description->name))
+        out.push_back({std::string(entry.description->name), {}, 0, 0});
   for (const std::string& setting : verb.settings) set_option(setting, out);
   std::vector<Sweep> sweeps;
   for (const std::string& text : verb.sweeps) sweeps.push_back(parse_sweep(text, "--sweep"));
@@ -95,6 +105,7 @@ std::vector<Entry> settings_of(const ReplayVerb& verb, const ReplayResult& resul
           {"budget_s", verb.budget_s.value_or(ReplayOptions().budget_s)},
           {"no_skip", verb.no_skip},
           {"no_timing", verb.no_timing},
+          {"published", verb.published},
           {"no_faults", verb.source.no_faults},
           {"faults", std::move(faults)}};
 }
@@ -120,6 +131,7 @@ ReplayOptions options_of(const ReplayVerb& verb) {
   options.window_s = verb.window_s.value_or(0);
   options.allan = !verb.no_allan;
   options.no_skip = verb.no_skip;
+  options.published = verb.published;
   options.timing = !verb.no_timing;
   if (verb.budget_s) options.budget_s = *verb.budget_s;
   return options;
@@ -303,14 +315,21 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
                 "folder for the results, made when absent (default: LOG-replay)")
       .value_name("DIR")
       .writes();
+  const Option algorithms =
+      options
+          .add_texts("--algorithms",
+                     verb->algorithms,
+                     "run these only (default: the scene's, else all that it has the data for)")
+          .separated_by_commas()
+          .once_each()
+          .value_name("NAME,…")
+          .known_words(algorithm_names());
   options
-      .add_texts("--algorithms",
-                 verb->algorithms,
-                 "run these only (default: the scene's, else all that it has the data for)")
-      .separated_by_commas()
-      .once_each()
-      .value_name("NAME,…")
-      .known_words(algorithm_names());
+      .add_flag("--published",
+                verb->published,
+                "also run the algorithms as their sources have them (…-published), beside the "
+                "mended ones")
+      .excludes(algorithms);
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
       .value_name("SETTING")
       .once_each();

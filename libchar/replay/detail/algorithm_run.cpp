@@ -138,8 +138,8 @@ double AlgorithmRun::accounted(const Work& work) {
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     if (frame_->heap != nullptr) {
       const HeapUse use = frame_->heap->end();
-      peak_ = std::max(peak_, held_ + use.peak);
-      held_ += use.held;
+      heap_.peak = std::max(heap_.peak, heap_.held + use.peak);
+      heap_.held += use.held;
     }
     return seconds;
   };
@@ -157,6 +157,7 @@ AlgorithmRun::AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& fram
   const auto inputs = static_cast<std::size_t>(frame.array->inputs());
   meters_.resize(inputs);
   if (frame.allan) allan_.resize(inputs);
+  medians_.set_length(frame.instants);
   guarded([&] {
     runner_ = planned.entry->make(
         some_left_out() ? subset(*frame.array, *frame.live) : *frame.array, planned.settings);
@@ -222,11 +223,22 @@ LearntAlgorithm AlgorithmRun::hand_out() const {
   return out;
 }
 
-void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples) {
+// In parts between the instants at which weights and variances are noted.
+void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples, bool noted) {
   Eigen::MatrixXd given;
   if (some_left_out()) given = samples(*frame_->live, Eigen::all);
   const Eigen::MatrixXd& all = some_left_out() ? given : samples;
-  const double seconds = accounted([&] { runner_->run(all, x_, variance_); });
+  double seconds = 0;
+  for (Eigen::Index done = 0, part = 0; done < all.cols(); done += part) {
+    const auto so_far = static_cast<std::int64_t>(steps_) + done;
+    const std::int64_t due = noted ? medians_.until_next(so_far) : all.cols();
+    part = std::min<Eigen::Index>(due, all.cols() - done);
+    seconds += accounted([&] {
+      runner_->run(
+          all.middleCols(done, part), x_.middleCols(done, part), variance_.middleCols(done, part));
+    });
+    if (noted && part == due) medians_.note(weights(), variances());
+  }
   timed_s_ += seconds;
   if (blocks_ % stride_ == 0) ns_.push_back(1e9 * seconds / static_cast<double>(samples.cols()));
 }
@@ -250,7 +262,7 @@ void AlgorithmRun::run(const Eigen::MatrixXd& samples) {
   if (!alive()) return;
   x_.resize(frame_->array->inputs(), samples.cols());
   variance_.resize(x_.rows(), x_.cols());
-  timed_run(samples);
+  timed_run(samples, true);
   steps_ += static_cast<std::uint64_t>(samples.cols());
 }
 
@@ -258,7 +270,7 @@ void AlgorithmRun::repeat(const Eigen::MatrixXd& samples) {
   if (!alive()) return;
   x_.resize(frame_->array->inputs(), samples.cols());
   variance_.resize(x_.rows(), x_.cols());
-  timed_run(samples);
+  timed_run(samples, false);
 }
 
 double AlgorithmRun::median_ns() const {
@@ -349,11 +361,13 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
   out.ns_per_sample = median_ns();
   out.learning_s = learning_s_ - ahead_s_;
   if (frame_->heap != nullptr)
-    out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(peak_, 0));
+    out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(heap_.peak, 0));
   if (const auto found = weights())
     for (const auto& column : found->colwise())
       out.weights.emplace_back(column.begin(), column.end());
   if (const auto found = variances()) out.variances.assign(found->begin(), found->end());
+  std::vector<double> none;
+  medians_.take(out.weights.size() == 1 ? out.weights[0] : none, out.variances);
   out.weight_track = thinned(track_times_, weight_samples_, kTrackBins);
   out.variance_track = thinned(track_times_, variance_samples_, kTrackBins);
   out.faults = faults();

@@ -8,6 +8,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/fusion/runner.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
+#include "libchar/replay/detail/run_medians.hpp"
 #include "libchar/replay/fusion_file.hpp"
 
 namespace libchar {
@@ -19,6 +20,7 @@ struct RunFrame {
   HeapMeter* heap = nullptr;
   double rate_hz = 0, start_s = 0;  ///< of the run
   double scored_from_s = 0;         ///< after the warm-up
+  std::int64_t instants = 0;        ///< of the run
   double output_scale = 1;
   bool tilt = false;  ///< errors are taken the short way round
   bool allan = false;
@@ -79,7 +81,7 @@ class AlgorithmRun {
   template <class Work>
   double accounted(const Work& work);  // wall seconds
   bool some_left_out() const { return frame_->live != nullptr && !frame_->live->empty(); }
-  void timed_run(const Eigen::MatrixXd& samples);
+  void timed_run(const Eigen::MatrixXd& samples, bool noted);
   void note_tracks(double time_s);
   void thin_notes();
   std::vector<FoundFault> faults() const;
@@ -97,10 +99,13 @@ class AlgorithmRun {
   double timed_s_ = 0;
   double ahead_s_ = 0;  // of looking at the run, for all its instants
   std::uint64_t looked_ = 0;
+  RunMedians medians_;
   std::vector<double> track_times_;
   std::vector<std::vector<double>> weight_samples_, variance_samples_;
   double learning_s_ = 0, available_ = 0, scored_ = 0;
-  std::int64_t held_ = 0, peak_ = 0;
+  struct {
+    std::int64_t held = 0, peak = 0;
+  } heap_;
   std::uint64_t learnt_ = 0, steps_ = 0;
 };
 

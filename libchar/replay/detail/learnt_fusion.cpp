@@ -84,6 +84,10 @@ LearntSensor learnt_sensor(const Scene& scene,
   out.cross = from.cross;
   const SourceInfo& source = instants.source().info();
   set_units(source, scene, source.units[i], out);
+  if (!scene.tilt && instants.factor(i) != 1) {
+    out.scale *= instants.factor(i);
+    out.unit = instants.info().units[i];
+  }
   if (!scene.tilt) out.h.assign(h.row(row).begin(), h.row(row).end());
   add_noise(plan.array, i, out);
   out.left_out =

@@ -51,7 +51,7 @@ struct InputView {
   bool has_window_rms = false, has_allan = false;
 };
 
-/// A row of numbers at the end of the run, one a sensor; NaN: none.
+/// A row of numbers of the run, one a sensor; NaN: none.
 struct FinalRow {
   std::string label;  ///< "minque: weights of x", "minque: standard deviations"
   std::vector<double> values;

@@ -115,6 +115,31 @@ std::string without_reference_sentence(const ReplayResult& r,
   return best.label + " learns from a reference.";
 }
 
+// What the learning window taught, and what each step of it brought.
+std::string taught_sentence(const ReplayResult& r) {
+  if (!r.alignment || r.alignment->trials.empty() || !r.learning) return "";
+  const std::vector<AlignmentResult::Trial>& trials = r.alignment->trials;
+  std::vector<std::string> kept, idle;
+  for (std::size_t k = 1; k < trials.size(); ++k) {
+    const AlignmentResult::Trial& trial = trials[k];
+    if (trial.kept)
+      kept.push_back(fmt::format(
+          "{} {} (mean {})", trial.term, brief_text(trial.rmse, 3), brief_text(trial.of_mean, 3)));
+    else
+      idle.push_back(trial.term);
+  }
+  std::string out = fmt::format(
+      "{} taught ({} to {}). One half of it judged by the other: the mean {}, learnt weights {}",
+      r.scene.learning ? "The learning window" : "The first half of the recording",
+      duration_text(r.learning->from_s),
+      duration_text(r.learning->to_s),
+      error_text(trials[0].of_mean, r.inputs[0].unit),
+      error_text(trials[0].rmse, r.inputs[0].unit));
+  if (!kept.empty()) out += fmt::format("; taken out of the sensors in turn: {}", list_of(kept));
+  if (!idle.empty()) out += fmt::format("; not worth it: {}", list_of(idle));
+  return out + ".";
+}
+
 std::string bounds_sentence(const ReplayResult& r) {
   std::vector<std::string> bounds;
   for (const AlgorithmResult* a : ranked(r))
@@ -132,30 +157,46 @@ struct SensorSentence {
   bool against_fusion = false;  ///< that sensor alone is better
 };
 
+// The method that hands a single sensor on has nothing to do with whether fusion pays.
+std::string alone_sentence(const ReplayResult& r, const AlgorithmResult& best) {
+  if (best.label == r.best_fusion || best.weights.size() != 1) return "";
+  const std::vector<double>& w = best.weights[0];
+  const auto largest = std::max_element(
+      w.begin(), w.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return fmt::format("{} takes {} alone.",
+                     best.label,
+                     r.sensors[static_cast<std::size_t>(largest - w.begin())].name);
+}
+
 SensorSentence sensor_sentence(const ReplayResult& r) {
-  if (!r.best_sensor || !r.best_over_sensor) return {};
+  const AlgorithmResult* best = r.find(r.best_fusion);
+  if (!r.best_sensor || !r.best_over_sensor || best == nullptr) return {};
   const SensorResult& sensor = r.sensors[*r.best_sensor];
-  const AlgorithmResult& best = r.algorithms[*r.best];
-  const double ratio = best.rmse / sensor.error.rmse;
+  const double ratio = best->rmse / sensor.error.rmse;
   const Interval& interval = *r.best_over_sensor;
+  const bool same = r.algorithms[*r.best].label == best->label;
+  const std::string name = same ? best->label : best->label + ", the best fusion,";
+  const std::string whose = same ? "its error" : "the error of " + name;
   const std::string alone = fmt::format("{}, the best single sensor ({})",
                                         sensor.name,
                                         error_text(sensor.error.rmse, r.inputs[0].unit));
   if (ratio > 1 + kPracticalTolerance && interval.low > 1)
     return {fmt::format("Fusion does not pay here: the error of {} is {} larger than that of {}: "
                         "use that sensor alone.",
-                        best.label,
+                        name,
                         percent_text(ratio - 1),
                         alone),
             true};
   if (ratio < 1 - kPracticalTolerance && interval.high < 1)
-    return {fmt::format("Fusion pays: its error is {} (95 %: {} to {}) below that of {}.",
+    return {fmt::format("Fusion pays: {} is {} (95 %: {} to {}) below that of {}.",
+                        whose,
                         percent_text(1 - ratio),
                         percent_text(1 - interval.high),
                         percent_text(1 - interval.low),
                         alone)};
   return {fmt::format(
-      "Whether fusion pays is not resolved: its error is {} times that of {} (95 %: {} to {}).",
+      "Whether fusion pays is not resolved: {} is {} times that of {} (95 %: {} to {}).",
+      whose,
       brief_text(ratio),
       alone,
       brief_text(interval.low),
@@ -206,7 +247,9 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
     out.insert(out.begin(), std::move(single.text));
   else
     add(single.text);
+  add(alone_sentence(r, best));
   add(without_reference_sentence(r, best, costs));
+  add(taught_sentence(r));
   add(equals_sentence(r, best, costs));
   if (r.has_reference)
     add(bounds_sentence(r));

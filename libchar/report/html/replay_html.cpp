@@ -369,8 +369,8 @@ std::string weights(const ReplayView& view) {
   const Table table = weights_table(view);
   return table.rows.empty()
              ? ""
-             : "<section class=\"part\" id=\"weights\">\n<h2>Weights and noise levels at the "
-               "end</h2>\n<div class=\"copy-place\" data-copy=\"weights\"></div>\n" +
+             : "<section class=\"part\" id=\"weights\">\n<h2>Weights and noise levels of "
+               "the run</h2>\n<div class=\"copy-place\" data-copy=\"weights\"></div>\n" +
                    html_table(table) + "</section>\n";
 }
 

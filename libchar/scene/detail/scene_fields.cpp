@@ -11,6 +11,8 @@ namespace libchar {
 namespace {
 
 constexpr Word kInterpolations[] = {{"sinc", 0}, {"cubic", 1}};
+constexpr Word kReadings[] = {
+    {"instant", 0}, {"mean_before", 1}, {"mean_after", 2}, {"mean_centred", 3}, {"estimate", 4}};
 constexpr Word kTeachers[] = {{"reference", 0}, {"sensors", 1}};
 constexpr Word kDetrendWords[] = {{kDetrends[0], 0}, {kDetrends[1], 1}, {kDetrends[2], 2}};
 constexpr Word kLowPassStarts[] = {{"steady", 0}, {"zero", 1}};
@@ -268,6 +270,20 @@ const Fields<SceneReference>& reference_fields() {
           {.meaning = "the reference reads so much more than the sensors, in "
                       "its own unit; it is subtracted from it (below)",
            .otherwise = "0"}),
+      field<&SceneReference::samples>(
+          "samples",
+          {.words = kReadings,
+           .meaning =
+               "what each value stands for where there are less than half as many as samples: "
+               "the instant of its stamp, or the mean over the interval in front of it, "
+               "behind it or around it",
+           .otherwise = "estimate: the most likely of the four"}),
+      field<&SceneReference::teach>(
+          "teach",
+          {.meaning = "false: without a learning window nothing is learnt",
+           .otherwise = "true: of a recording of which neither windows "
+                        "nor an alignment are given, the first half "
+                        "teaches"}),
   };
   return rows;
 }
@@ -292,6 +308,12 @@ const Fields<SceneAlign>& align_fields() {
            .meaning = "sinc is within 1e-4 up to 0.37 of the rate; cubic damps what is faster "
                       "than 0.12 of it, aliased vibration too",
            .otherwise = "sinc"}),
+      field<&SceneAlign::choose>(
+          "choose",
+          {.meaning = "terms are tried one by one, each learnt on one half of "
+                      "the stretch and judged on the other, and kept where "
+                      "they pay; needs a reference",
+           .otherwise = "false"}),
       field<&SceneAlign::apply>("apply",
                                 {.meaning = "false: the error budget is reported, and the sensors "
                                             "are fused as recorded",

@@ -155,7 +155,7 @@ Entry sensors_entry(const Scene& scene) {
 
 Entry reference_entry(const SceneReference& r, const std::string& scene) {
   if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag && r.offset == 0 &&
-      !r.estimate_offset)
+      !r.estimate_offset && r.teach && r.samples == "estimate")
     return {"reference", r.channels};
   Entries below = entries_of(reference_fields(), r);
   below.push_back({"channels", r.channels});

@@ -1,6 +1,7 @@
 #include "libchar/replay/detail/align/aligned_pass.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/replay/detail/align/instants.hpp"
@@ -16,8 +17,18 @@ class HeldBack {
   HeldBack(const SceneAlignment& alignment,
            std::int64_t from,
            std::int64_t to,
+           std::int64_t count,
            const AlignedInstant& one)
-      : alignment_(alignment), aligner_(alignment.alignment), next_(from), to_(to), one_(one) {}
+      : alignment_(alignment), aligner_(alignment.alignment), next_(from), to_(to), one_(one) {
+    // Between its first and its last sample every sensor has a value of its own time.
+    last_whole_ = count - 1;
+    for (const fusion::ChannelAlignment& channel : alignment.alignment.channels) {
+      if (!channel.used) continue;
+      first_whole_ = std::max<std::int64_t>(first_whole_, std::llround(std::ceil(-channel.delay)));
+      last_whole_ =
+          std::min<std::int64_t>(last_whole_, count - 1 - std::llround(std::ceil(channel.delay)));
+    }
+  }
 
   void take(std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
     if (samples_.size() == 0) base_ = first;
@@ -43,13 +54,15 @@ class HeldBack {
     for (; next_ < std::min(until, to_); ++next_) {
       const Eigen::Index at = next_ - base_;
       aligner_.column(samples_, at, aligned_);
+      // At the ends of the recording only sensors without a delay have samples: no array, no estimate.
+      if (next_ < first_whole_ || next_ > last_whole_) aligned_.setConstant(kMissing);
       one_({samples_.col(at), aligned_, truth_.col(at)});
     }
   }
 
   const SceneAlignment& alignment_;
   fusion::Aligner aligner_;
-  std::int64_t base_ = 0, next_, to_;
+  std::int64_t base_ = 0, next_, to_, first_whole_ = 0, last_whole_;
   const AlignedInstant& one_;
   Eigen::MatrixXd samples_, truth_;
   Eigen::VectorXd aligned_;
@@ -63,7 +76,7 @@ void each_aligned(const Instants& instants,
                   std::int64_t to,
                   Progress& progress,
                   const AlignedInstant& one) {
-  HeldBack held(alignment, from, to, one);
+  HeldBack held(alignment, from, to, instants.info().count, one);
   instants.pass_recorded(std::max<std::int64_t>(0, from - fusion::kAlignmentMargin),
                          std::min(instants.info().count, to + fusion::kAlignmentMargin),
                          kAlignedBlock,

@@ -10,6 +10,7 @@
 #include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/fusion/budget_meter.hpp"
 #include "libchar/replay/detail/align/instants.hpp"
+#include "libchar/replay/detail/align/term_choice.hpp"
 
 namespace libchar {
 namespace {
@@ -18,6 +19,10 @@ constexpr std::size_t kLearningBlockOfAlignment = 2048;
 /// Samples held in memory while an alignment is learnt.
 constexpr std::int64_t kMostValues = std::int64_t{1} << 20;
 constexpr std::int64_t kStretches = 64;
+/// Instants of a stretch: its ends, where interpolation has no neighbours, are a small part of it.
+constexpr std::int64_t kShortestStretch = 256;
+/// Values that are enough to tell which terms pay: each is learnt twice.
+constexpr std::int64_t kMostTried = std::int64_t{1} << 18;
 
 struct LearningWindow {
   std::int64_t from = 0, to = 0;
@@ -77,9 +82,11 @@ fusion::AlignmentOptions options_of(const Scene& scene) {
 // All of the window, or stretches of it when it is long.
 class Gathered {
  public:
-  Gathered(LearningWindow window, std::int64_t rows) : window_(window) {
-    const std::int64_t length = window.to - window.from, most = kMostValues / rows;
-    stretches_ = length <= most ? 1 : kStretches;
+  Gathered(LearningWindow window, std::int64_t rows, std::int64_t values = kMostValues)
+      : window_(window) {
+    const std::int64_t length = window.to - window.from, most = values / rows;
+    stretches_ =
+        length <= most ? 1 : std::clamp<std::int64_t>(most / kShortestStretch, 1, kStretches);
     each_ = std::min(length, most / stretches_);
   }
   void take(std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
@@ -103,6 +110,7 @@ class Gathered {
     if (by_reference) data.truth = truths_.row(0);
   }
   bool in_part() const { return stretches_ > 1; }
+  std::int64_t stretches() const { return stretches_; }
   fusion::AlignmentData data;
 
  private:
@@ -111,7 +119,52 @@ class Gathered {
   Eigen::MatrixXd truths_;
 };
 
+// The window of the alignment, in the unit of the input.
+Gathered gather(const Scene& scene,
+                const ReplayPlan& plan,
+                const Instants& instants,
+                std::int64_t values,
+                LearningWindow& window,
+                Progress& progress) {
+  const Eigen::VectorXd h = weights_of(scene, instants);
+  const bool by_reference = instants.info().has_reference && scene.align->by != "sensors";
+  window = window_of_alignment(scene, plan, instants);
+  const auto axes = static_cast<Eigen::Index>(instants.source().info().further_axes);
+  Gathered out(window, h.size() * (1 + axes), values);
+  instants.pass_recorded(
+      window.from, window.to, kLearningBlockOfAlignment, progress, [&](const InstantBlock& b) {
+        out.take(b.first, b.samples, b.truth);
+      });
+  out.finish(by_reference);
+  out.data.channels = h.size();
+  if (out.data.samples.size() > 0)
+    out.data.samples.topRows(h.size()).array().colwise() /= h.array();
+  return out;
+}
+
 }  // namespace
+
+std::vector<AlignmentResult::Trial> choose_scene_terms(Scene& scene,
+                                                       const ReplayPlan& plan,
+                                                       const Instants& instants,
+                                                       Progress& progress) {
+  SceneAlign& align = *scene.align;
+  LearningWindow window;
+  const Gathered gathered = gather(scene, plan, instants, kMostTried, window, progress);
+  fusion::AlignmentOptions allowed = options_of(scene);
+  const TermChoice choice = choose_terms(gathered.data, allowed);
+  align.apply = choice.any();
+  if (!align.apply) return choice.trials;
+  align.terms.clear();
+  const bool kept[] = {
+      choice.options.delay, choice.options.bias, choice.options.gain, choice.options.misalignment};
+  for (std::size_t k = 0; k < std::size(kept); ++k)
+    if (kept[k]) align.terms.emplace_back(kAlignTerms[k]);
+  if (choice.options.delay)
+    align.interpolation =
+        choice.options.interpolation == fusion::Interpolation::cubic ? "cubic" : "sinc";
+  return choice.trials;
+}
 
 SceneAlignment learn_scene_alignment(const Scene& scene,
                                      const ReplayPlan& plan,
@@ -120,19 +173,10 @@ SceneAlignment learn_scene_alignment(const Scene& scene,
   SceneAlignment out;
   out.h = weights_of(scene, instants);
   out.by_reference = instants.info().has_reference && scene.align->by != "sensors";
-  const LearningWindow window = window_of_alignment(scene, plan, instants);
+  LearningWindow window;
+  const Gathered gathered = gather(scene, plan, instants, kMostValues, window, progress);
   out.from = window.from;
   out.to = window.to;
-  const auto axes = static_cast<Eigen::Index>(instants.source().info().further_axes);
-  Gathered gathered(window, out.h.size() * (1 + axes));
-  instants.pass_recorded(
-      window.from, window.to, kLearningBlockOfAlignment, progress, [&](const InstantBlock& b) {
-        gathered.take(b.first, b.samples, b.truth);
-      });
-  gathered.finish(out.by_reference);
-  gathered.data.channels = out.h.size();
-  if (gathered.data.samples.size() > 0)
-    gathered.data.samples.topRows(out.h.size()).array().colwise() /= out.h.array();
   try {
     out.alignment = fusion::learn_alignment(gathered.data, options_of(scene));
   } catch (const Error& error) {
@@ -143,7 +187,7 @@ SceneAlignment learn_scene_alignment(const Scene& scene,
   if (gathered.in_part())
     out.alignment.notes.push_back(
         fmt::format("learnt from {} stretches of the window, {} instants in all",
-                    kStretches,
+                    gathered.stretches(),
                     gathered.data.samples.cols()));
   return out;
 }

@@ -16,6 +16,13 @@ SceneAlignment learn_scene_alignment(const Scene& scene,
                                      const Instants& instants,
                                      Progress& progress);
 
+/// Takes the terms that pay into the scene's alignment (`choose`); it is applied where there is one. Nothing to learn
+/// from there: no trials.
+std::vector<AlignmentResult::Trial> choose_scene_terms(Scene& scene,
+                                                       const ReplayPlan& plan,
+                                                       const Instants& instants,
+                                                       Progress& progress);
+
 /// What the alignment is, and the error budget of the run.
 AlignmentResult measure_alignment(const Scene& scene,
                                   const ReplayPlan& plan,

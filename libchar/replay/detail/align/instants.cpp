@@ -13,10 +13,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/replay/detail/align/slow_reference.hpp"
+#include "libchar/replay/detail/plan/common_unit.hpp"
 
 namespace libchar {
 namespace {
@@ -147,7 +150,17 @@ class Instants::Columns {
     std::fill(counts_.begin(), counts_.end(), std::size_t{0});
   }
 
+  // Of a slow reference with values at its stamps only the instants nearest to them have a truth.
   void truth_from_track(double t) {
+    const ReferenceTrack& track = *instants_.track_;
+    if (instants_.info_.slow_samples) {
+      const double place = (t - instants_.lag_s_ - track.start_s) * track.rate_hz;
+      const double off_s = std::abs(place - std::round(place)) / track.rate_hz;
+      const bool nearest = off_s * instants_.source_.info().rate_hz <= 0.5 + kOnGrid;
+      return truth_of([&](std::size_t c) {
+        return nearest ? track.curved(c, t - instants_.lag_s_) : kMissing;
+      });
+    }
     truth_of([&](std::size_t c) { return instants_.track_->at(c, t - instants_.lag_s_); });
   }
 
@@ -234,7 +247,7 @@ Instants::Instants(const Scene& scene, Progress& progress)
       const double covers_s = static_cast<double>(track_->values[0].size()) / track_->rate_hz;
       if (!scene.reference->estimate_lag && (start_s > length_s || start_s + covers_s < 0))
         refuse_apart(length_s);
-      if (track_->rate_hz < 0.5 * source.rate_hz) fit_slow_reference();
+      info_.slow_reference = track_->rate_hz < 0.5 * source.rate_hz;
     }
     const std::size_t inputs = scene.reference->mean ? 1 : scene.reference->channels.size();
     for (std::size_t j = 0; j < inputs; ++j) {
@@ -250,9 +263,12 @@ Instants::Instants(const Scene& scene, Progress& progress)
     }
   }
   inputs_ = info_.input_names.size();
+  factors_ = to_common_unit(scene, reference_units, info_.units);
+  if (info_.slow_reference) read_slow_reference(progress);
   if (scene.tilt) convert_tilt();
   if (scene.reference) reference_offset_ = scene.reference->offset * truth_factor_;
-  if (scene.reference && scene.reference->lag_s != 0) set_lag(scene.reference->lag_s, progress);
+  if (scene.reference && scene.reference->lag_s != 0 && !info_.slow_reference)
+    set_lag(scene.reference->lag_s, progress);
   prepare(progress);
 }
 
@@ -284,14 +300,64 @@ void Instants::prepare(Progress& progress) {
   preparation_.filter = band_filter(asked.from_hz, asked.to_hz, info_.rate_hz);
 }
 
-// One instant for each interval of the reference that lies within the recording.
-void Instants::fit_slow_reference() {
+// What all sensors say together: the median of how far each is from its first sample.
+std::vector<double> Instants::common_level(Progress& progress) const {
+  std::vector<double> out, firsts(sensors_, kMissing), off;
+  out.reserve(static_cast<std::size_t>(source_.info().samples));
+  source_.stream(
+      source_.info().samples,
+      [&](std::uint64_t, std::span<const std::span<const double>> columns) {
+        for (std::size_t k = 0; k < columns[0].size(); ++k) {
+          off.clear();
+          for (std::size_t i = 0; i < sensors_; ++i) {
+            const double y = columns[i][k] * factors_[i];
+            if (!std::isfinite(y)) continue;
+            if (std::isnan(firsts[i])) firsts[i] = y;
+            off.push_back(y - firsts[i]);
+          }
+          out.push_back(2 * off.size() > sensors_ ? median_in_place(off) : kMissing);
+        }
+      },
+      progress);
+  return out;
+}
+
+// A mean over intervals of the reference where its values are means; its own instants where they are samples.
+void Instants::read_slow_reference(Progress& progress) {
+  const SceneReference& reference = *scene_->reference;
+  const bool one = !scene_->tilt && (reference.mean || reference.channels.size() == 1);
+  SlowQuestion question{reference.samples, reference.lag_s, reference.estimate_lag && one};
+  if (!one && question.samples == "estimate") question.samples = SceneReference::kReadings[0];
+  SlowReading reading{question.samples, question.lag_s, 0};
+  if (question.samples == "estimate" || question.estimate_lag) {
+    std::vector<double> values(track_->values[0].size(), 0.0);
+    for (const std::vector<double>& channel : track_->values)
+      for (std::size_t j = 0; j < values.size(); ++j) values[j] += channel[j];
+    const std::vector<double> level = common_level(progress);
+    reading = read_slowly(question, level, source_.info().rate_hz, *track_, values);
+  }
+  lag_s_ = reading.lag_s;
+  info_.slow_samples = reading.samples == "instant";
+  if (info_.slow_samples)
+    info_.reference_use =
+        fmt::format("at its own stamps, every {}", duration_text(1 / track_->rate_hz, 6));
+  else
+    take_means_over_intervals(track_->start_s + interval_start(reading.samples) / track_->rate_hz);
+  if (reading.margin > 0)
+    info_.reference_use +=
+        fmt::format(" (its values are {} by the sensors; log-likelihood {} above the next reading)",
+                    info_.slow_samples ? "samples" : reading.samples,
+                    brief_text(reading.margin, 3));
+}
+
+// One instant for each interval of the reference that lies within the recording; `start_s`: of its first.
+void Instants::take_means_over_intervals(double start_s) {
+  track_->start_s = start_s;
   const double interval_s = 1 / track_->rate_hz;
   const double length_s = static_cast<double>(info_.count) / info_.rate_hz;
   info_.averaged = static_cast<std::size_t>(std::llround(info_.rate_hz * interval_s));
-  const double lag = scene_->reference->lag_s;
-  const double first = std::ceil(-(track_->start_s + lag) * track_->rate_hz - kOnGrid);
-  info_.start_s = track_->start_s + lag + std::max(0.0, first) * interval_s;
+  const double first = std::ceil(-(track_->start_s + lag_s_) * track_->rate_hz - kOnGrid);
+  info_.start_s = track_->start_s + lag_s_ + std::max(0.0, first) * interval_s;
   const double last = std::min(static_cast<double>(track_->values[0].size()) - std::max(0.0, first),
                                std::floor((length_s - info_.start_s) * track_->rate_hz + kOnGrid));
   info_.count = static_cast<std::int64_t>(std::max(0.0, last));
@@ -320,7 +386,7 @@ void Instants::refuse_apart(double length_s) const {
 
 // The first and the last interval may reach beyond the recording: a mean over a part of one is no mean over it.
 void Instants::note_partial_intervals(double length_s) {
-  const double begun_s = track_->start_s + scene_->reference->lag_s;
+  const double begun_s = track_->start_s + lag_s_;
   const double end_s = info_.start_s + static_cast<double>(info_.count) / info_.rate_hz;
   const double ended_s = begun_s + static_cast<double>(track_->values[0].size()) / track_->rate_hz;
   const double least_s = 0.5 / source_.info().rate_hz;

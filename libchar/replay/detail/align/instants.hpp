@@ -24,6 +24,8 @@ struct InstantsInfo {
   double start_s = 0;        ///< of instant 0, seconds from the recording's first sample
   std::size_t averaged = 1;  ///< samples in an instant (a slow reference)
   bool has_reference = false;
+  bool slow_reference = false;     ///< it has less than half as many values as there are samples
+  bool slow_samples = false;       ///< and they stand for the instants of their stamps
   std::string reference_use;       ///< how truth and samples are matched, a phrase
   std::vector<std::string> units;  ///< of the sensors, as fused
   std::vector<std::string> input_names, input_units;  ///< of the true inputs, as scored
@@ -67,12 +69,16 @@ class Instants {
   void set_lag(double lag_s, Progress& progress);
   /// Subtracted from the one true input from now on; as fused (a tilt in rad).
   void set_reference_offset(double offset) { reference_offset_ = offset; }
+  /// The sensors lag the reference by this.
+  double lag_s() const { return lag_s_; }
   double reference_offset() const { return reference_offset_; }
   /// The first instant at or after a time in seconds from the recording's first sample.
   std::int64_t instant_at(double time_s) const;
 
  private:
-  void fit_slow_reference();
+  void read_slow_reference(Progress& progress);
+  std::vector<double> common_level(Progress& progress) const;
+  void take_means_over_intervals(double start_s);
   [[noreturn]] void refuse_apart(double length_s) const;
   void note_partial_intervals(double length_s);
   void prepare(Progress& progress);

@@ -21,7 +21,7 @@
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
-#include "libchar/replay/detail/mean_uncertainty.hpp"
+#include "libchar/replay/detail/judge/mean_uncertainty.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 
 namespace libchar {
@@ -279,11 +279,6 @@ double find_lag(const Scene& scene,
                 const Instants& instants,
                 const TimeWindow& window,
                 Progress& progress) {
-  if (instants.info().averaged > 1)
-    throw input_error("E0906", scene.file)
-        .says("reference.lag_s: a reference slower than the sensors does not show their lag")
-        .got("estimate")
-        .hint("give lag_s as a number of seconds");
   const std::int64_t from = instants.instant_at(window.from_s);
   const std::int64_t to = std::min(instants.instant_at(window.to_s), from + kMostInstants);
   const Pair pair = series(scene, instants, from, to, progress);

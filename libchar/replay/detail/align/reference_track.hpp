@@ -20,6 +20,8 @@ struct ReferenceTrack {
 
   /// Linear between samples; NaN beyond the ends and beside missing samples.
   double at(std::size_t channel, double time_s) const;
+  /// The same by the cubic through four samples (of an angle, and where one of them is missing: linear).
+  double curved(std::size_t channel, double time_s) const;
 };
 
 /// Reads the reference of a scene: from a log of its own, or from the recording itself.

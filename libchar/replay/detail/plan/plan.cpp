@@ -20,6 +20,8 @@ namespace {
 // blocks large enough that reading the clock costs nothing.
 constexpr std::int64_t kBlocks = 512;
 constexpr std::int64_t kSmallestBlock = 256, kLargestBlock = 4096;
+/// A shorter recording has no half to spare.
+constexpr std::int64_t kFewestTaught = 512;
 
 Eigen::MatrixXd observation_matrix(const Scene& scene, std::size_t inputs) {
   if (scene.tilt) return {};
@@ -181,12 +183,19 @@ void place_warm_up(const Scene& scene, const Instants& instants, ReplayPlan& pla
         .got(duration_text(static_cast<double>(plan.warm_up) / instants.info().rate_hz));
 }
 
+TimeWindow first_half(const Instants& instants) {
+  const InstantsInfo& info = instants.info();
+  return {0, info.start_s + static_cast<double>(info.count / 2) / info.rate_hz};
+}
+
 // Seconds from the recording's first sample to instants.
 void place_windows(const Scene& scene,
                    const ReplayOptions& options,
                    const Instants& instants,
                    ReplayPlan& plan) {
-  const auto learning = options.learning ? options.learning : scene.learning;
+  auto learning = options.learning ? options.learning : scene.learning;
+  if (!learning && scene.align && scene.align->choose && instants.info().count >= kFewestTaught)
+    learning = first_half(instants);
   const auto evaluation = options.evaluation ? options.evaluation : scene.evaluation;
   const double end_s = instants.info().start_s +
                        static_cast<double>(instants.info().count) / instants.info().rate_hz;
@@ -277,12 +286,15 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
   }
   if (asked.empty() || options.no_skip)
     for (const fusion::Entry& entry : fusion::algorithms())
-      if (!times.contains(std::string(entry.description->name)))
-        out.push_back({std::string(entry.description->name),
-                       &entry,
-                       fusion::Settings(entry.options),
-                       "",
-                       asked.empty()});
+      if (const std::string name(entry.description->name); !times.contains(name))
+        out.push_back(
+            {name,
+             &entry,
+             fusion::Settings(entry.options),
+             asked.empty() && entry.description->as_published && !options.published
+                 ? name + " is the form as published: it runs by name, or with `published`"
+                 : "",
+             asked.empty()});
   return out;
 }
 
@@ -336,6 +348,28 @@ void keep_budget(const ReplayOptions& options, const fusion::Array& live, Replay
 
 }  // namespace
 
+Scene taught(const Scene& scene, const ReplayOptions& options) {
+  Scene out = scene;
+  const auto& asked = options.algorithms.empty() ? scene.algorithms : options.algorithms;
+  const bool learns =
+      asked.empty() || std::any_of(asked.begin(), asked.end(), [](const SceneAlgorithm& a) {
+        const fusion::Entry* entry = fusion::find_algorithm(a.name);
+        return entry != nullptr && entry->description->needs.reference;
+      });
+  const bool said = scene.learning || scene.evaluation || options.learning || options.evaluation ||
+                    scene.align || scene.fault_free_s || !scene.faults.empty() ||
+                    (scene.simulated && !scene.simulated->faults.empty());
+  const bool one =
+      scene.reference && (scene.reference->mean || scene.reference->channels.size() == 1);
+  if (!learns || said || !one || !scene.reference->teach || scene.simulate || scene.tilt ||
+      scene.sensors.size() < 2)
+    return out;
+  out.align = SceneAlign{};
+  out.align->learn = "learning";
+  out.align->choose = true;
+  return out;
+}
+
 ReplayPlan make_plan(const Scene& scene,
                      const ReplayOptions& options,
                      const Instants& instants,
@@ -355,7 +389,7 @@ ReplayPlan make_plan(const Scene& scene,
   const fusion::Array live = subset(plan.array, plan.live);
   plan.algorithms = choose(scene, options);
   for (PlannedAlgorithm& algorithm : plan.algorithms)
-    algorithm.why = fusion::why_not(*algorithm.entry->description, live);
+    if (algorithm.runs()) algorithm.why = fusion::why_not(*algorithm.entry->description, live);
   if (instants.info().has_reference) plan.optimum = optimum(live);
   const auto any = [&](auto&& wanted) {
     return std::any_of(plan.algorithms.begin(), plan.algorithms.end(), [&](const auto& a) {

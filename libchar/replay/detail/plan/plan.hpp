@@ -44,6 +44,10 @@ struct ReplayPlan {
   Findings warnings;
 };
 
+/// The scene as it is replayed: where a reference could teach, and nothing says when and what, the first half of the
+/// recording does, and terms of an alignment are tried.
+Scene taught(const Scene& scene, const ReplayOptions& options);
+
 /// Throws Error(input) for unknown algorithms or options of the scene (with place), windows outside
 /// the recording, an empty run.
 ReplayPlan make_plan(const Scene& scene,

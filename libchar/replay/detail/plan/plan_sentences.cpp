@@ -40,6 +40,21 @@ std::string reading(const Scene& scene, const Instants& instants) {
                      source.kept ? "once, and keeps them" : "again for each pass");
 }
 
+// Of sensors whose unit is not that of the others; "": all are in one.
+std::string conversions(const Scene& scene, const Instants& instants) {
+  std::string out, common;
+  for (std::size_t i = 0; !scene.tilt && i < scene.sensors.size(); ++i)
+    if (instants.factor(i) != 1) {
+      common = instants.info().units[i];
+      out += fmt::format("{}{} from {}",
+                         out.empty() ? "" : ", ",
+                         scene.sensors[i].name,
+                         scene.sensors[i].unit.empty() ? instants.source().info().units[i]
+                                                       : scene.sensors[i].unit);
+    }
+  return out.empty() ? out : "converts to " + common + ": " + out;
+}
+
 std::string reference(const Scene& scene, const Instants& instants) {
   if (!scene.reference)
     return "no reference: no algorithm learns, scores are leave-one-out and split-array";
@@ -49,14 +64,15 @@ std::string reference(const Scene& scene, const Instants& instants) {
   return fmt::format("reference {}: {}", names, instants.info().reference_use);
 }
 
-std::string learning(const ReplayPlan& plan) {
+std::string learning(const ReplayPlan& plan, bool said) {
   if (plan.learn_to <= plan.learn_from) return "no learning window: nothing is learnt beforehand";
   if (!plan.learning_pass)
     return "the learning window is not read: no algorithm that runs learns there";
-  return fmt::format("learning on {} instants from {} to {}: {}",
+  return fmt::format("learning on {} instants from {} to {}{}: {}",
                      plan.learn_to - plan.learn_from,
                      seconds(plan.learning.from_s),
                      seconds(plan.learning.to_s),
+                     said ? "" : ", the first half, as no window is given (`learning`)",
                      names_of(plan.algorithms, [](const auto& a) { return a.learns_before(); }));
 }
 
@@ -89,6 +105,12 @@ std::string align(const SceneAlign& align) {
       : align.learn == "run" ? "on the evaluation itself"
       : align.learn == "rest" ? "at rest"
                               : "in the learning window";
+  if (align.choose)
+    return fmt::format(
+        "alignment: terms are tried one by one {}, and taken out of the sensors where they pay on "
+        "the "
+        "other half of it",
+        where);
   return fmt::format("alignment: learnt {}{}",
                      where,
                      align.apply ? ", taken out of the sensors before they are fused"
@@ -113,6 +135,8 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
                                    const Instants& instants,
                                    const SensorKnowledge& knowledge) {
   std::vector<std::string> out = {reading(scene, instants), reference(scene, instants)};
+  if (std::string text = conversions(scene, instants); !text.empty())
+    out.push_back(std::move(text));
   if (!scene.tilt) out.push_back(levels(scene, knowledge));
   if (scene.rest)
     out.push_back(fmt::format("at rest from {} to {}: offsets subtracted",
@@ -124,7 +148,8 @@ std::vector<std::string> sentences(const ReplayPlan& plan,
         "offset of the reference: found {}, subtracted from it",
         plan.learn_to > plan.learn_from ? "in the learning window" : "on the evaluation itself"));
   if (scene.align) out.push_back(align(*scene.align));
-  if (scene.reference) out.push_back(learning(plan));
+  if (scene.reference)
+    out.push_back(learning(plan, scene.learning || !scene.align || !scene.align->choose));
   out.push_back(fmt::format("evaluation: {} instants at {} Hz from {} to {}",
                             plan.run_to - plan.run_from,
                             brief_text(instants.info().rate_hz, 6),

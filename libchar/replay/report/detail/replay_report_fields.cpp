@@ -67,6 +67,13 @@ const Fields<ReplayReport::Alignment> kAlignmentBudget = always(Fields<ReplayRep
     written<ReplayReport::Alignment, write_savings>("savings", "map of numbers"),
     list_of<&ReplayReport::Alignment::budgeted_sensors>("sensors", kAlignmentBudgeted),
 });
+const Fields<AlignmentResult::Trial> kTrialFields = always(Fields<AlignmentResult::Trial>{
+    field<&AlignmentResult::Trial::term>("term", {.meaning = "that was tried; empty: as recorded"}),
+    field<&AlignmentResult::Trial::rmse>("rmse",
+                                         {.meaning = "of weights learnt on the other half"}),
+    field<&AlignmentResult::Trial::of_mean>("rmse_of_mean"),
+    field<&AlignmentResult::Trial::kept>("kept"),
+});
 const Fields<ReplayReport::Alignment> kAlignmentFields = always(Fields<ReplayReport::Alignment>{
     beside<&ReplayReport::Alignment::window>(kWindowFields),
     computed<[](const ReplayReport::Alignment& a) { return a.learnt.instants; }>("instants"),
@@ -76,6 +83,7 @@ const Fields<ReplayReport::Alignment> kAlignmentFields = always(Fields<ReplayRep
     field<&ReplayReport::Alignment::overlaps>("judged_where_learnt"),
     field<&ReplayReport::Alignment::learnt, &fusion::Alignment::interpolation>(
         "interpolation", {.words = kInterpolationWords}),
+    list_of<&ReplayReport::Alignment::trials>("trials", kTrialFields),
     field<&ReplayReport::Alignment::learnt, &fusion::Alignment::notes>("notes"),
     list_of<&ReplayReport::Alignment::sensors>("sensors", kChannelFields),
     level<ReplayReport::Alignment>("budget", kAlignmentBudget),
@@ -171,6 +179,7 @@ const Fields<ReplayReport>& ReplayReport::fields() {
       list_of<&T::faults>("faults", reported_fault_fields()),
       list_of<&T::detection>("detection", detection),
       field_or_null<&T::best>("best"),
+      field_or_null<&T::best_fusion>("best_fusion"),
       field_or_null<&T::best_sensor>("best_sensor"),
       field<&T::best_over_sensor>("best_over_sensor_ci95"),
       field<&T::offsets_decide>("offsets_decide"),

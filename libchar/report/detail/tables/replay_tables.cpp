@@ -231,7 +231,7 @@ Table blind_table(const ReplayView& view) {
 }
 
 Table weights_table(const ReplayView& view) {
-  Table out("at the end of the run");
+  Table out("median over the run");
   add_sensors(out, *view.result);
   out.columns.push_back({"distance"});
   out.note =

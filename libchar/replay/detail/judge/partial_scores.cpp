@@ -1,4 +1,4 @@
-#include "libchar/replay/detail/partial_scores.hpp"
+#include "libchar/replay/detail/judge/partial_scores.hpp"
 
 #include <algorithm>
 #include <cmath>

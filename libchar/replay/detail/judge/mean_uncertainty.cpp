@@ -6,7 +6,7 @@
 // and b >= 0, fitted to V_256 … V_8, each a gamma variable of k - 1 degrees of freedom. What is
 // wanted is g(n) = a + b: no batch has seen it, where b > 0. The second term is left out where the
 // batches do not ask for it, first without the shortest, which are correlated soonest.
-#include "libchar/replay/detail/mean_uncertainty.hpp"
+#include "libchar/replay/detail/judge/mean_uncertainty.hpp"
 
 #include <algorithm>
 #include <array>

@@ -38,11 +38,13 @@ void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result);
 
 /// The best method and who cannot be told from it. `meters`: the errors that `rmse` came from, for
 /// each algorithm, empty where there are none.
+/// `costs`: of choice.hpp.
 void judge_best(ReplayResult& result,
                 const std::vector<Meters>& meters,
+                const std::vector<double>& costs,
                 const ScoreOptions& scoring);
 
-/// The best single sensor beside the best method: one input, a reference. `sensors`: of their errors, in order.
+/// The best single sensor beside the best fusion: one input, a reference. `sensors`: of their errors, in order.
 void judge_best_sensor(ReplayResult& result,
                        const std::vector<Meters>& meters,
                        const Meters& sensors,

@@ -1,17 +1,15 @@
-#include "libchar/replay/detail/judgement.hpp"
+#include "libchar/replay/detail/judge/judgement.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/dense.hpp"
-#include "libchar/replay/detail/partial_scores.hpp"
+#include "libchar/replay/detail/judge/choice.hpp"
+#include "libchar/replay/detail/judge/partial_scores.hpp"
 
 namespace libchar {
 namespace {
-
-/// A method that has an estimate at clearly fewer instants than others does not win by them.
-constexpr double kLeastShare = 0.9;
 
 // The diagonal of (H' R^-1 H)^-1, R the sensors' mean square errors: by QR of R^-1/2 H.
 Eigen::VectorXd gauss_markov(const std::vector<double>& rms, const fusion::Array& array) {
@@ -103,32 +101,23 @@ namespace {
 /// Of a mean square difference from the others, in the means: beyond it nothing else is compared.
 constexpr double kMostOffsets = 0.9;
 
-std::optional<std::size_t> smallest_error(const ReplayResult& result) {
-  double most_available = 0;
-  for (const AlgorithmResult& a : result.algorithms)
-    if (a.ran && !a.bound) most_available = std::max(most_available, a.availability);
-  std::optional<std::size_t> best;
-  for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
-    const AlgorithmResult& a = result.algorithms[k];
-    if (!a.ran || a.bound || !std::isfinite(a.rmse) ||
-        a.availability < kLeastShare * most_available)
-      continue;
-    if (!best || a.rmse < result.algorithms[*best].rmse) best = k;
-  }
-  return best;
-}
-
 }  // namespace
 
 void judge_best(ReplayResult& result,
                 const std::vector<Meters>& meters,
+                const std::vector<double>& costs,
                 const ScoreOptions& scoring) {
-  result.best = smallest_error(result);
+  result.best = choose_method(result, costs);
+  const auto fusion = choose_method(result, costs, true);
+  if (fusion) result.best_fusion = result.algorithms[*fusion].label;
   if (!result.best) return;
   const std::size_t best = *result.best;
   const auto& blind = result.algorithms[best].blind;
   result.offsets_decide = !result.has_reference && blind && blind->offset_share > kMostOffsets;
-  if (result.offsets_decide) return result.best.reset();
+  if (result.offsets_decide) {
+    result.best_fusion.clear();
+    return result.best.reset();
+  }
   result.algorithms[best].as_good_as_best = true;
   // As many chances to look worse as there are others (Bonferroni).
   double others = 0;
@@ -163,14 +152,16 @@ void judge_best_sensor(ReplayResult& result,
     most_available = std::max(most_available, sensor.error.availability);
   for (std::size_t i = 0; i < result.sensors.size(); ++i) {
     const double rmse = result.sensors[i].error.rmse;
-    const bool most = result.sensors[i].error.availability >= kLeastShare * most_available;
+    const bool most = result.sensors[i].error.availability >= kLeastAvailable * most_available;
     if (std::isfinite(rmse) && most && !result.sensors[i].constant &&
         (!result.best_sensor || rmse < result.sensors[*result.best_sensor].error.rmse))
       result.best_sensor = i;
   }
-  if (result.best_sensor && !meters[*result.best].empty())
-    result.best_over_sensor =
-        rms_ratio_interval(meters[*result.best], {sensors[*result.best_sensor]}, scoring);
+  const AlgorithmResult* fusion = result.find(result.best_fusion);
+  if (!result.best_sensor || fusion == nullptr) return;
+  const Meters& errors = meters[static_cast<std::size_t>(fusion - result.algorithms.data())];
+  if (!errors.empty())
+    result.best_over_sensor = rms_ratio_interval(errors, {sensors[*result.best_sensor]}, scoring);
 }
 
 namespace {
