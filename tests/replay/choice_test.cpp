@@ -1,6 +1,9 @@
 // Which method is recommended, and of what "does fusion pay?" is answered.
 #include "libchar/replay/detail/judge/choice.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <catch2/catch.hpp>
 
 #include "libchar/fusion/registry.hpp"
@@ -100,6 +103,6 @@ TEST_CASE(
   CHECK(alone.algorithms[*alone.best].label == "best-axes");
   CHECK(alone.best_fusion == "mean");
   CHECK_THAT(
-      replay_verdict(alone, false),
+      fmt::format("{}", fmt::join(verdict_sentences(alone, false), " ")),
       Contains("best-axes takes a alone.") && Contains("the error of mean, the best fusion, is"));
 }

@@ -10,7 +10,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/fusion/aligner.hpp"
-#include "libchar/replay/algorithm_result.hpp"
+#include "libchar/replay/replay_result.hpp"
 
 namespace libchar {
 namespace {

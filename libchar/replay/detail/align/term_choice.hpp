@@ -2,7 +2,7 @@
 // Which terms of an alignment pay.
 
 #include "libchar/fusion/alignment_learning.hpp"
-#include "libchar/replay/sensor_result.hpp"
+#include "libchar/replay/replay_result.hpp"
 
 namespace libchar {
 
