@@ -323,6 +323,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   if (options.remedies) {
     report_band(now.band, bins, now.fit);
     answer_low_frequencies(now);
+    report_high_pass(now.band, now.fit);
     if (law) answer_power_law(*law, now.fit);
     if (band_options.small_shapes && now.band.passes)
       average_over_small_shapes(
@@ -331,12 +332,14 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   judge(now.fit, now.band.passes, allan);
   if (process) answer_process(bins, now.band, *process, now.fit);
   if (options.clock) settle_flicker_phase(now.fit);
-  const bool terms_alone = !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
+  // An Allan curve has no way of saying what lies behind a high-pass.
+  const bool behind = now.band.named.family == NamedShape::Family::high_pass;
+  const bool terms_alone = !behind && !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
                            !(now.fit.flicker_phase && now.fit.flicker_phase->value);
   if (options.second_opinion && allan != nullptr && terms_alone)
     now.fit.second_opinion =
         second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
-  if (allan != nullptr) answer_contradictions(now.fit, *allan);
+  if (allan != nullptr && !behind) answer_contradictions(now.fit, *allan);
   now.fit.bins = bins;
   return std::move(now.fit);
 }

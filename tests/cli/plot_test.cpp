@@ -33,7 +33,7 @@ TEST_CASE("plot writes what the name of the file says, whole, and never over ano
   REQUIRE(ran.code == 0);
   CHECK(ran.out == "");
   const std::string first = test::slurp(svg);
-  CHECK_THAT(first, Contains("<text") && Contains("N = 0.00401 deg/s·√s"));
+  CHECK_THAT(first, Contains("<text") && Contains("N = 0.00402 deg/s·√s"));
   ran = test::run({"plot", plotted_report(), "-c", "gyro_z", "-o", svg});
   CHECK(ran.code == 5);
   CHECK(test::slurp(svg) == first);

@@ -29,16 +29,20 @@ NoiseEstimate estimate_of(const NoiseFit& fit) {
 
 FitOptions plain(const TermSet& terms) {
   FitOptions options;
+  options.white_top =
+      true;  // nothing shapes these records, as the bound and the recipes take for granted
   options.terms = terms;
   options.threshold = 0;
   options.remedies = options.second_opinion = options.events = options.stationarity = false;
   return options;
 }
 
-/// What `characterize` does with a record.
+/// What `characterize --assume white-top` does with a record.
 NoiseEstimate whole_fit(std::span<const double> y, double rate_hz, const TermSet&) {
   const AllanCurve curve = pyramid_deviation(y, 1 / rate_hz);
-  return estimate_of(fit_record(y, rate_hz, &curve));
+  FitOptions options;
+  options.white_top = true;  // nothing shapes these records, as bound and recipes take for granted
+  return estimate_of(fit_record(y, rate_hz, &curve, options));
 }
 
 NoiseEstimate whittle_of(std::span<const PooledPower> powers,

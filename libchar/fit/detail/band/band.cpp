@@ -234,6 +234,13 @@ struct Search {
   const BandOptions& options;
   std::optional<Trial> closest;  ///< of those that did not pass
 
+  /// Lower edge of the slowest coefficient: a quarter over the duration.
+  double slowest_hz() const {
+    double slowest = rate_hz / 2;
+    for (const PowerBin& bin : bins) slowest = std::min(slowest, std::max(bin.low_hz, 1e-300));
+    return slowest;
+  }
+
   std::optional<Trial> at(const Band& band) const {
     return tried(bins, rate_hz, terms, band, options);
   }
@@ -265,15 +272,22 @@ struct Search {
                                 const std::optional<NamedShape>& start,
                                 double hopeless) const {
     // A corner shows by what is beyond it; less damped it is a peak.
-    constexpr double kInside = 0.5, kLow = 1.0 / 12, kDamped = 0.25;
+    // Two poles far apart, or a corner in the slowest coefficients, are a drift that is no noise.
+    constexpr double kInside = 0.5, kLow = 1.0 / 12, kDamped = 0.25, kOverdamped = 2, kPeriods = 12;
     if (members(bins, band).size() < kFewestBins) return std::nullopt;
     TermSet offered = terms;
     offered[kLentTerm] = offered[kLentTerm] || band.tau_s;
     const auto shape =
         fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, offered, family, start, hopeless);
-    if (!shape || shape->damping < kDamped ||
+    if (!shape || shape->damping < kDamped || shape->damping > kOverdamped ||
+        shape->pole_hz < kPeriods * 4 * slowest_hz() ||
         shape->pole_hz > std::min(kInside * band.top_hz, kLow * rate_hz))
       return std::nullopt;
+    // A shelf that is higher is an edge of something else.
+    constexpr double kHighest = 4;
+    const double rise =
+        shape->zero_hz > 0 ? std::abs(std::log(shape->pole_hz / shape->zero_hz)) : 0;
+    if (family == NamedShape::Family::shelf && rise > std::log(kHighest)) return std::nullopt;
     band.named = *shape;
     band.orders = static_cast<int>(unknowns_of(family));
     return at(band);
@@ -526,8 +540,7 @@ Band passing_band(const std::vector<PowerBin>& bins,
   Search search{bins, rate_hz, terms, options, std::nullopt};
   const std::optional<Trial> unshaped = search.at(whole);
   if (!unshaped) return whole;
-  double slowest_hz = rate_hz / 2;
-  for (const PowerBin& bin : bins) slowest_hz = std::min(slowest_hz, std::max(bin.low_hz, 1e-300));
+  const double slowest_hz = search.slowest_hz();
   const ShelfTest shelf = shelf_test(search, *unshaped, slowest_hz);
   if (shelf.rising > options.high_pass)
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz))

@@ -156,13 +156,6 @@ void add_lines(const std::vector<PowerBin>& clipped,
 }
 
 void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& fit) {
-  if (band.named.family == NamedShape::Family::high_pass)
-    fit.findings.push_back(finding(
-        "high_passed",
-        fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an output "
-                    "with its mean taken out. B and K are those in front of it.",
-                    named_shape_text(band.named)),
-        "the slow end of the spectrum falls like behind a high-pass"));
   const std::string alarm = "the noise terms alone do not describe the whole spectrum";
   if (band.quantized)
     fit.remedies.push_back({"quantization", alarm, "quantization noise added to the model", 1});
@@ -205,6 +198,16 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
                                         left_out,
                                         bins.size()),
                             left_out});
+}
+
+void report_high_pass(const Band& band, NoiseFit& fit) {
+  if (band.named.family != NamedShape::Family::high_pass) return;
+  fit.findings.push_back(finding(
+      "high_passed",
+      fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an output "
+                  "with its mean taken out. B and K are those in front of it.",
+                  named_shape_text(band.named)),
+      "the slow end of the spectrum falls like behind a high-pass"));
 }
 
 std::vector<FitResidual> inside_of(const std::vector<FitResidual>& residuals) {
