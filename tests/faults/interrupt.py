@@ -62,7 +62,7 @@ JOBS = {
     "characterize": ["characterize", "long.f64", "-o", "out"],
     "convert": ["convert", "long.f64", "-o", "out/long.npy"],
     "simulate": ["simulate", "gyro.sensor.yaml", "--samples", "2000000000", "-o", "out/simulated.f64"],
-    "replay": ["replay", "wide.csv", "--sensors", "s*", "--budget", "1000s", "-o", "out"],
+    "replay": ["replay", "wide.csv", "--sensors", "s*", "--budget", "1000s", "--published", "-o", "out"],
     "fuse": ["fuse", "--with", "learnt/fusion.yaml", "long3.f64", "--algorithm", "mean", "-o", "out/fused.f64"],
 }
 
