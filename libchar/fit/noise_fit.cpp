@@ -300,6 +300,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   Band band;
   BandOptions band_options;
   band_options.small_shapes = !options.clock && !options.white_top;
+  band_options.corners = !options.clock;
   if (options.remedies)
     band = find_band(bins, rate_hz, options.terms, band_options);
   else

@@ -489,7 +489,7 @@ ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest
 
 /// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it.
 std::optional<Band> high_passed(const Search& search, const Trial& unshaped, double slowest_hz) {
-  constexpr double kNeeded = 14;   ///< of 2 lnL
+  constexpr double kNeeded = 16;   ///< of 2 lnL
   constexpr double kPeriods = 12;  ///< of the corner in the record: below, a drift looks like that
   const double duration_s = 0.25 / slowest_hz;
   Band band = unshaped.band;
@@ -512,12 +512,12 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   if (!shape || !(shape->pole_hz * duration_s > kPeriods)) return std::nullopt;
   band.named = *shape;
   band.orders = 1;
-  // A walk behind a high-pass is a Gauss-Markov process: that has its own search.
+  // A walk behind a high-pass is a Gauss-Markov process, and quantization noise rises: they have their own searches.
   constexpr double kAsGood = 3;  ///< of ln L
   Band process = unshaped.band;
   process.tau_s = 1 / (2 * std::numbers::pi * shape->pole_hz);
   TermSet offered = search.terms;
-  offered[kLentTerm] = true;
+  offered[kLentTerm] = offered[kQuantizationTerm] = true;
   if (score(bin_problem(bins_of(search.bins, process, search.rate_hz)), offered).half_deviance <
       least + kAsGood)
     return std::nullopt;
@@ -541,7 +541,7 @@ Band passing_band(const std::vector<PowerBin>& bins,
   const std::optional<Trial> unshaped = search.at(whole);
   if (!unshaped) return whole;
   const double slowest_hz = search.slowest_hz();
-  const ShelfTest shelf = shelf_test(search, *unshaped, slowest_hz);
+  const ShelfTest shelf = options.corners ? shelf_test(search, *unshaped, slowest_hz) : ShelfTest{};
   if (shelf.rising > options.high_pass)
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz))
       return *falling;

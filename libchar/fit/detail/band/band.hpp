@@ -41,8 +41,10 @@ struct BandOptions {
   int most_orders = 4;
   std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
   bool small_shapes = false;    ///< the top may have a shape that is too small for the tests
-  double high_pass = 1.5;       ///< deviate from which on a high-pass is looked for
-  double shelf = 3.9;           ///< deviate of a directed test from which on a shelf is looked for
+  bool corners =
+      false;  ///< shelves and high-passes are looked for: not of a clock, whose noise rises
+  double high_pass = 1.5;  ///< deviate from which on a high-pass is looked for
+  double shelf = 3.9;      ///< deviate of a directed test from which on a shelf is looked for
   double seen =
       3;  ///< standard deviations of such a shape from which on a filter with a name is tried
 };
