@@ -10,6 +10,7 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/refusal.hpp"
@@ -78,6 +79,7 @@ Attempt attempt(const std::vector<PowerBin>& bins,
                 std::uint64_t samples,
                 const FitOptions& options) {
   Attempt out{&bins, std::move(band), options, {}, 0};
+  if (out.band.bottom_hz > 0) out.options.terms = {true, false, false, false, false};
   if (out.band.quantized) out.options.terms[kQuantization] = true;
   if (out.band.tau_s) out.options.terms[kRamp] = true;
   const BinProblem problem = problem_of(bins, out.band, rate_hz);
@@ -235,6 +237,41 @@ void admit_misfit(NoiseFit& fit, const AllanCurve* allan) {
   }
 }
 
+/// Of slow noise a hump leaves a limit alone: it is nowhere above what was measured.
+double largest_beneath(Term term, const std::vector<PowerBin>& bins) {
+  constexpr double kFewestDof = 8, kTail = 0.05;
+  double largest = std::numeric_limits<double>::infinity();
+  for (const PowerBin& bin : bins) {
+    const double unit = bin.unit[static_cast<std::size_t>(term)];
+    if (bin.dof < kFewestDof || !(unit > 0)) continue;
+    const double upper = bin.energy * bin.dof / chi_square_quantile(kTail, bin.dof);
+    largest = std::min(largest, std::sqrt(upper / unit));
+  }
+  return largest;
+}
+
+void answer_hump(const std::vector<PowerBin>& bins,
+                 double bottom_hz,
+                 const TermSet& asked,
+                 NoiseFit& fit) {
+  for (const Term slow : {Term::flicker, Term::walk}) {
+    const double largest = largest_beneath(slow, bins);
+    if (!asked[static_cast<std::size_t>(slow)] || !std::isfinite(largest)) continue;
+    Coefficient& term = fit.term[static_cast<std::size_t>(slow)] = {};
+    term.status = Status::not_detected;
+    term.upper95 = largest;
+    term.ci95 = {0, largest};
+  }
+  Finding hump = finding(
+      "hump",
+      fmt::format("Below {} Hz the record holds what no noise term describes (a cycle, a movement, "
+                  "the temperature): N is from above, and of B and K there are limits alone.",
+                  brief_text(bottom_hz)),
+      "its slow part is no noise");
+  hump.where.frequency_hz.push_back({0, bottom_hz});
+  fit.findings.push_back(std::move(hump));
+}
+
 /// A cut band says of white noise what its slow part shows; a limit below the whole spectrum above
 /// it would be a statement about frequencies that were not looked at.
 void raise_white_limit(NoiseFit& fit) {
@@ -306,7 +343,8 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   else
     band = whole_band(bins, rate_hz);
   std::optional<GaussMarkovChoice> process;
-  if (options.remedies && options.gauss_markov && !options.clock)
+  const bool hump = band.bottom_hz > 0;
+  if (options.remedies && options.gauss_markov && !options.clock && !hump)
     process = choose_gauss_markov(
         bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
   std::optional<PowerLawChoice> law;
@@ -323,6 +361,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   }
   if (options.remedies) {
     report_band(now.band, bins, now.fit);
+    if (hump) answer_hump(bins, now.band.bottom_hz, options.terms, now.fit);
     answer_low_frequencies(now);
     report_high_pass(now.band, now.fit);
     if (law) answer_power_law(*law, now.fit);
@@ -335,12 +374,13 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   if (options.clock) settle_flicker_phase(now.fit);
   // An Allan curve has no way of saying what lies behind a high-pass.
   const bool behind = now.band.named.family == NamedShape::Family::high_pass;
-  const bool terms_alone = !behind && !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
+  const bool terms_alone = !behind && !hump &&
+                           !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
                            !(now.fit.flicker_phase && now.fit.flicker_phase->value);
   if (options.second_opinion && allan != nullptr && terms_alone)
     now.fit.second_opinion =
         second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
-  if (allan != nullptr && !behind) answer_contradictions(now.fit, *allan);
+  if (allan != nullptr && !behind && !hump) answer_contradictions(now.fit, *allan);
   now.fit.bins = bins;
   return std::move(now.fit);
 }
@@ -391,7 +431,11 @@ NoiseFit fit_powers(std::span<const PooledPower> powers,
   else
     lines.bins = power_bins(powers, rate_hz);
   if (temperature) count_spent(*temperature, static_cast<double>(samples) / rate_hz, lines.bins);
-  NoiseFit fit = fit_power_bins(lines.bins, rate_hz, samples, allan, options, workspace);
+  FitOptions chosen = options;
+  // The cycles are in the Allan curve: no opinion on what is left.
+  chosen.second_opinion = options.second_opinion && lines.cycles.empty();
+  NoiseFit fit = fit_power_bins(lines.bins, rate_hz, samples, allan, chosen, workspace);
+  if (!lines.cycles.empty()) fit.findings.push_back(detail::cycle_finding(lines.cycles));
   if (lines.clipped == 0) return fit;
   add_lines(lines.bins, lines.all, fit);
   fit.remedies.insert(fit.remedies.begin(), lines_remedy(lines.clipped));

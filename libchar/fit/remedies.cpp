@@ -8,6 +8,7 @@
 
 #include "libchar/core/numeric/moments.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 
@@ -42,7 +43,7 @@ SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count)
     answer.remedy = {
         "spikes",
         fmt::format("kurtosis of differences {} > {}", brief_text(kurtosis), brief_text(alarm)),
-        fmt::format("{} sample{} left out", count.left_out, count.left_out == 1 ? "" : "s"),
+        plural(count.left_out, "sample") + " left out",
         count.left_out};
   answer.outliers = outlier_variance(answer.remedy ? count.without : count.with);
   return answer;
@@ -70,6 +71,26 @@ Remedy lines_remedy(std::uint64_t clipped) {
           "coefficients of the spectrum above 32 times the floor around them",
           fmt::format("{} coefficients in and beside spectral lines left out", clipped),
           clipped};
+}
+
+Finding detail::cycle_finding(std::span<const ClippedBins::Cycle> cycles) {
+  const ClippedBins::Cycle& strongest = *std::max_element(
+      cycles.begin(), cycles.end(), [](const ClippedBins::Cycle& a, const ClippedBins::Cycle& b) {
+        return a.amplitude < b.amplitude;
+      });
+  const std::size_t further = cycles.size() - 1;
+  Finding found = finding(
+      "cycle",
+      fmt::format(
+          "The record holds a cycle of {} (amplitude {}{}): it was taken out before the "
+          "noise was fitted, and stays in the Allan curve.",
+          duration_text(1 / strongest.frequency_hz),
+          brief_text(strongest.amplitude, 3),
+          further > 0 ? fmt::format(", {} further line{}", further, further > 1 ? "s" : "") : ""),
+      "a cycle was taken out");
+  for (const ClippedBins::Cycle& cycle : cycles)
+    found.where.frequency_hz.push_back({cycle.frequency_hz, cycle.frequency_hz});
+  return found;
 }
 
 const Remedy* find_remedy(const NoiseFit& fit, std::string_view kind) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libchar/fit/fit_result.hpp"
+#include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fit/signs/spike_cleaner.hpp"
 
 namespace libchar {
@@ -41,6 +42,11 @@ DespikedRecord without_spikes(std::span<const double> record, std::optional<doub
 void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);
 
 Remedy lines_remedy(std::uint64_t clipped);
+
+namespace detail {
+/// What is said of slow cycles that were taken out; by frequency, at least one.
+Finding cycle_finding(std::span<const ClippedBins::Cycle> cycles);
+}  // namespace detail
 
 /// What a fit did of a kind; null: nothing.
 const Remedy* find_remedy(const NoiseFit& fit, std::string_view kind);

@@ -268,6 +268,34 @@ TEST_CASE("events: a warm-up that outlasts the record leaves no drift and no wal
   CHECK(walks == 0);
 }
 
+TEST_CASE("events: a warm-up on a straight drift is both, and leaves no walk behind") {
+  test::NoiseSource source(kEventSamples, kEventRate, 31);
+  constexpr double kLasts = kEventSamples / kEventRate;
+  const double tau = 0.42 * kLasts, size = -40 * kEventSigma, drift = 10 * kEventSigma;
+  int both = 0, walks = 0, covered = 0;
+  constexpr int kRecords = 10;
+  for (int r = 0; r < kRecords; ++r) {
+    std::vector<double> y = source.record(kQ, 0, 0);
+    for (std::size_t t = 0; t < y.size(); ++t) {
+      const double s = static_cast<double>(t) / kEventRate;
+      y[t] += size * std::exp(-s / tau) + drift * s / kLasts;
+    }
+    const EventSearch found = search(y);
+    both += found.events.size() == 2 ? 1 : 0;
+    for (const Event& event : found.events) {
+      const double true_size = event.kind == EventKind::ramp ? drift : size;
+      covered += std::abs(event.size - true_size) < 2.5 * event.sd ? 1 : 0;
+      UNSCOPED_INFO(event.size << " " << event.sd << " " << true_size << " " << event.tau_s);
+    }
+    FitOptions options;
+    options.second_opinion = false;
+    walks += fit_record(y, kEventRate, nullptr, options)[Term::walk].status == Status::detected;
+  }
+  CHECK(both >= kRecords - 1);
+  CHECK(covered >= 2 * kRecords - 3);
+  CHECK(walks == 0);
+}
+
 TEST_CASE("events: a ramp has a sign and an honest interval") {
   test::NoiseSource source(kEventSamples, kEventRate, 24);
   int covered = 0, told = 0;

@@ -124,6 +124,34 @@ LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::u
   return clip;
 }
 
+/// A sine spends the coefficients about its own.
+void clip_cycles(const PooledPower& power, LineClip& clip) {
+  clip.clipped.resize(power.mean.size(), 0);
+  for (const PooledPower::Cycle& cycle : power.cycles) {
+    const auto place = static_cast<std::uint64_t>(std::llround(cycle.place));
+    for (std::uint64_t k = std::max(power.first, place - 1); k <= place + 1; ++k)
+      if (k < power.first + power.mean.size()) clip.clipped[k - power.first] = 1;
+  }
+}
+
+void append_without_cycles(const PooledPower& power, double rate_hz, ClippedBins& out) {
+  PooledPower rest = power;
+  rest.mean = power.without_cycles;
+  LineClip clip = clip_lines(rest.mean, rest.first, rest.pooled);
+  out.clipped += clip.count;
+  clip_cycles(power, clip);
+  append_power_bins(rest, rate_hz, clip.clipped, out.bins);
+  const double points_s = static_cast<double>(power.spacing) / rate_hz;
+  for (const PooledPower::Cycle& cycle : power.cycles)
+    out.cycles.push_back({cycle.place / (2 * static_cast<double>(power.length) * points_s),
+                          cycle.amplitude / std::sqrt(static_cast<double>(power.spacing))});
+  std::sort(out.cycles.begin(),
+            out.cycles.end(),
+            [](const ClippedBins::Cycle& a, const ClippedBins::Cycle& b) {
+              return a.frequency_hz < b.frequency_hz;
+            });
+}
+
 }  // namespace
 
 std::vector<PooledPower> whole_powers(std::span<const double> record) {
@@ -161,6 +189,10 @@ std::vector<PowerBin> power_bins(std::span<const double> record, double rate_hz)
 ClippedBins clipped_power_bins(std::span<const PooledPower> powers, double rate_hz) {
   ClippedBins out;
   for (const PooledPower& power : powers) {
+    if (!power.cycles.empty()) {
+      append_without_cycles(power, rate_hz, out);
+      continue;
+    }
     const LineClip clip = clip_lines(power.mean, power.first, power.pooled);
     out.clipped += clip.count;
     append_power_bins(power, rate_hz, clip.clipped, out.bins);

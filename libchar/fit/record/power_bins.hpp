@@ -24,6 +24,11 @@ struct PowerBin {
 
 /// Mean squared coefficients k = first.. of one transform length, pooled over `pooled` transforms.
 struct PooledPower {
+  /// A sine that was taken out of the record.
+  struct Cycle {
+    double place = 0;      ///< half periods in the record
+    double amplitude = 0;  ///< of its points, times the root of their spacing
+  };
   std::uint64_t length = 0;   ///< points of the transform
   std::uint64_t spacing = 1;  ///< samples averaged in a point
   std::uint64_t first = 1;
@@ -32,13 +37,20 @@ struct PooledPower {
   /// of `mean`, what events put there: taken out of the bins, whose degrees of freedom become
   /// fewer; empty: nothing
   std::vector<double> of_events = {};
+  /// slow cycles, and `mean` without them; empty: none
+  std::vector<Cycle> cycles = {};
+  std::vector<double> without_cycles = {};
 };
 
-/// Bins without the coefficients of spectral lines.
+/// Bins without slow cycles and the coefficients of spectral lines.
 struct ClippedBins {
+  struct Cycle {
+    double frequency_hz = 0, amplitude = 0;
+  };
   std::vector<PowerBin> bins;
   std::vector<PowerBin> all;  ///< with every coefficient; empty when none was left out
   std::uint64_t clipped = 0;  ///< coefficients left out
+  std::vector<Cycle> cycles;  ///< taken out of the record, by frequency
 };
 
 /// Of a record one exact transform, k >= 1. Missing samples: short ones are closed up

@@ -1,9 +1,11 @@
-// Steps, warm-up and ramp by generalised least squares in the metric of the noise that is fitted beside them. In each round the best
-// place of each kind joins the model by itself, the noise is fitted again without it, and its likelihood ratio
+// Steps, warm-up and ramp by generalised least squares in the metric of the noise that is fitted
+// beside them. In each round the best place of each kind joins the model by itself, the noise is
+// fitted again without it, and its likelihood ratio
 //   LR = 2 ln L(with it, noise refitted) - 2 ln L(without, noise refitted)
-// is held against the square of the threshold that the look-elsewhere effect of its kind sets (scans.hpp): the kind with
-// the largest LR - threshold^2 is taken, if that is positive. Kinds within kNotTold of it are named: steps, warm-ups and ramps
-// imitate one another. Then the round is repeated on what is left.
+// is held against the square of the threshold that the look-elsewhere effect of its kind sets
+// (scans.hpp): the kind with the largest LR - threshold^2 is taken, if that is positive. Kinds
+// within kNotTold of it are named: steps, warm-ups and ramps imitate one another. Then the round is
+// repeated on what is left.
 #include "libchar/fit/signs/events.hpp"
 
 #include <fmt/format.h>
@@ -166,10 +168,29 @@ struct Trial {
   double worth() const { return gain - candidate.threshold * candidate.threshold; }
 };
 
+bool has(const Hypothesis& now, EventKind kind) {
+  return std::any_of(now.fit.shape.begin(), now.fit.shape.end(), [&](const EventShape& shape) {
+    return shape.kind == kind;
+  });
+}
+
+/// Beside a straight line a warm-up has another time constant: alone it had to bend for both.
+void place_warm_up(const Search& search, std::vector<EventShape>& shapes, Hypothesis& with) {
+  for (EventShape& shape : shapes) {
+    if (shape.kind != EventKind::warm_up) continue;
+    std::vector<EventShape> others = shapes;
+    others.erase(others.begin() + (&shape - shapes.data()));
+    const Regression beside = regress(others, search.grid, search.coefficients, with.weight);
+    shape = best_of(EventKind::warm_up, search, beside, with.weight).shape;
+  }
+  fit_both(search, shapes, with);
+}
+
 Trial try_candidate(const Search& search, const Hypothesis& now, Candidate candidate) {
   Trial trial{candidate, now, 0};
   std::vector<EventShape> shapes = now.fit.shape;
   shapes.push_back(candidate.shape);
+  if (candidate.shape.kind == EventKind::ramp) place_warm_up(search, shapes, trial.with);
   fit_both(search, shapes, trial.with);
   const Regression others =
       regress(now.fit.shape, search.grid, search.coefficients, trial.with.weight);
@@ -184,15 +205,10 @@ Trial try_candidate(const Search& search, const Hypothesis& now, Candidate candi
 }
 
 std::vector<EventKind> offered(const Search& search, const Hypothesis& now) {
-  const auto has = [&](EventKind kind) {
-    return std::any_of(now.fit.shape.begin(), now.fit.shape.end(), [&](const EventShape& shape) {
-      return shape.kind == kind;
-    });
-  };
   std::vector<EventKind> kinds;
   if (search.options.steps) kinds.push_back(EventKind::step);
-  if (search.options.warm_up && !has(EventKind::warm_up)) kinds.push_back(EventKind::warm_up);
-  if (search.options.ramp && !has(EventKind::ramp)) kinds.push_back(EventKind::ramp);
+  if (search.options.warm_up && !has(now, EventKind::warm_up)) kinds.push_back(EventKind::warm_up);
+  if (search.options.ramp && !has(now, EventKind::ramp)) kinds.push_back(EventKind::ramp);
   return kinds;
 }
 
@@ -201,7 +217,8 @@ std::optional<Trial> next_event(const Search& search, const Hypothesis& now) {
   std::vector<Trial> trials;
   for (const EventKind kind : offered(search, now)) {
     const Candidate candidate = best_of(kind, search, now.fit, now.weight);
-    if (std::abs(candidate.score) < kGate * candidate.threshold) continue;
+    const bool bends_another = kind == EventKind::ramp && has(now, EventKind::warm_up);
+    if (!bends_another && std::abs(candidate.score) < kGate * candidate.threshold) continue;
     trials.push_back(try_candidate(search, now, candidate));
   }
   const auto best =
@@ -291,6 +308,29 @@ void bound_tau(const Search& search,
                     high + 1 == scan.tau.size() && in(high) ? 0 : scan.tau[high] * step_s};
 }
 
+/// Standard deviations of the sizes. Of a warm-up the time constant is not known either: a second
+/// one beside it spans what it may be, and the size is the sum of both, as each begins at one.
+std::vector<double> sds_of(const Search& search, const Hypothesis& now) {
+  constexpr double kOtherTau = 1.2;
+  std::vector<EventShape> shapes = now.fit.shape;
+  for (const EventShape& shape : now.fit.shape) {
+    if (shape.kind != EventKind::warm_up) continue;
+    shapes.push_back(shape);
+    shapes.back().tau *= kOtherTau;
+  }
+  const Regression fit = regress(shapes, search.grid, search.coefficients, now.weight);
+  const Eigen::Index other = fit.covariance.rows() - 1;
+  std::vector<double> sd;
+  for (std::size_t i = 0; i < now.fit.shape.size(); ++i) {
+    const auto j = static_cast<Eigen::Index>(i);
+    double variance = fit.covariance(j, j);
+    if (shapes[i].kind == EventKind::warm_up)
+      variance += fit.covariance(other, other) + 2 * fit.covariance(j, other);
+    sd.push_back(std::sqrt(std::max(variance, now.fit.covariance(j, j))));
+  }
+  return sd;
+}
+
 /// The sixteen longest missing stretches of at least two points, but at the ends.
 std::vector<EventShape> gaps_of(const EventSeries& series) {
   std::vector<EventShape> gaps;
@@ -307,14 +347,14 @@ std::vector<EventShape> gaps_of(const EventSeries& series) {
   return gaps;
 }
 
-Event event_of(const Search& search, const Hypothesis& now, std::size_t i) {
+Event event_of(const Search& search, const Hypothesis& now, std::size_t i, double sd) {
   const EventShape& shape = now.fit.shape[i];
   const double step_s = search.series.step_s;
   Event event;
   event.kind = shape.kind;
   event.size = now.fit.size(static_cast<Eigen::Index>(i));
-  event.sd = now.fit.sd(i);
-  event.score = std::min(std::abs(event.size) / event.sd, std::sqrt(now.gained[i]));
+  event.sd = sd;
+  event.score = std::min(std::abs(event.size) / now.fit.sd(i), std::sqrt(now.gained[i]));
   event.threshold = now.threshold[i];
   event.not_told_from = now.not_told[i];
   std::vector<EventShape> others = now.fit.shape;
@@ -342,7 +382,8 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i) {
   return event;
 }
 
-/// Where beside the events the scores of steps still pass their threshold: stretches between changes of sign count as one.
+/// Where beside the events the scores of steps still pass their threshold: stretches between
+/// changes of sign count as one.
 int further_steps(const Search& search, const Hypothesis& now) {
   const StepScan scan = scan_steps(now.fit, now.weight, search.grid.points, search.margin);
   const double limit =
@@ -440,8 +481,9 @@ EventSearch find_events(const EventSeries& series,
     place_again(search, now);
     drop_weak(search, now);
   }
+  const std::vector<double> sd = sds_of(search, now);
   for (std::size_t i = 0; i < now.fit.shape.size(); ++i) {
-    found.events.push_back(event_of(search, now, i));
+    found.events.push_back(event_of(search, now, i, sd[i]));
     found.findings.push_back(finding("event", event_sentence(found.events.back(), unit)));
     if (found.events.back().kind == EventKind::step)
       found.findings.back().where.time_s.push_back(

@@ -386,6 +386,44 @@ struct Search {
     return narrow;
   }
 
+  /// Probability of the residuals of a band's lowest two octaves.
+  double foot_of(const Trial& trial) const {
+    double chi2 = 0, dof = 0;
+    for (std::size_t i = 0; i < trial.index.size(); ++i) {
+      if (bins[trial.index[i]].low_hz > 4 * trial.band.bottom_hz) continue;
+      chi2 += trial.z[i] * trial.z[i];
+      dof += 1;
+    }
+    return dof > 0 ? chi_square_tail(chi2, dof) : 1;
+  }
+
+  /// Where nothing but a sliver at the slow end holds, what stands there is a cycle or a movement,
+  /// not noise in the bandwidth of the sensor: the widest band of white noise from the top down, of
+  /// five octaves at least.
+  std::optional<Band> above_hump(Band band) const {
+    constexpr double kLeast = 1.0 / 32;
+    const TermSet white = {true, false, false, false, false};
+    std::optional<Band> widest;
+    for (double low = kLeast * rate_hz / 2; low > slowest_hz(); low *= std::exp2(-kBandStep)) {
+      band.bottom_hz = low;
+      for (std::size_t j = 0; j < bins.size(); ++j) band.inside[j] = bins[j].low_hz >= low ? 1 : 0;
+      std::optional<Trial> trial;
+      for (const bool quantized : {false, true}) {
+        band.quantized = quantized;
+        trial = tried(bins, rate_hz, white, band, options);
+        if (trial && trial->band.passes) break;
+      }
+      if (!trial || !trial->band.passes || foot_of(*trial) < options.probability) break;
+      widest = trial->band;
+    }
+    if (!widest) return std::nullopt;
+    // The skirt of what is below rises slowly out of the noise: an octave of margin.
+    widest->bottom_hz *= 2;
+    for (std::size_t j = 0; j < bins.size(); ++j)
+      widest->inside[j] = bins[j].low_hz >= widest->bottom_hz ? 1 : 0;
+    return widest;
+  }
+
   /// With one order more; a cut band that passes without a shape is halved.
   Band with_margin(Band band) const {
     const bool whole = band.top_hz > rate_hz / 2 * 0.99;
@@ -614,6 +652,12 @@ Band find_band(const std::vector<PowerBin>& bins,
                const TermSet& terms,
                const BandOptions& options) {
   Band band = passing_band(bins, rate_hz, terms, options);
+  constexpr double kSliver = 1.0 / 256;  ///< of half the rate
+  const bool sliver = !band.passes || band.top_hz < kSliver * rate_hz / 2;
+  if (sliver && terms[static_cast<std::size_t>(Term::white)]) {
+    const Search search{bins, rate_hz, terms, options, std::nullopt};
+    if (const auto above = search.above_hump(whole_band(bins, rate_hz))) return *above;
+  }
   if (!options.small_shapes || !band.passes || band.orders > 0 || count_of(terms) == 0 ||
       members(bins, band).size() < kFewestBins)
     return band;

@@ -15,7 +15,9 @@ namespace libchar {
 
 /// Bins, the shape that multiplies their expectations, and how well that describes them.
 struct Band {
-  double top_hz = 0;         ///< bins end here; half the rate where nothing is left out
+  double top_hz = 0;  ///< bins end here; half the rate where nothing is left out
+  double bottom_hz =
+      0;  ///< and begin here: below is a hump that no noise term describes; 0: all do
   std::vector<char> inside;  ///< of every bin: is it fitted?
   NoiseShape filter;         ///< a filter known by name (boxcar, Bartlett), or none
   int orders = 0;            ///< of the polynomial of the shape beyond that, or unknowns of `named`

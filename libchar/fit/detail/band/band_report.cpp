@@ -191,13 +191,15 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
       static_cast<std::uint64_t>(std::count(band.inside.begin(), band.inside.end(), 0));
   // At the zeros of a filter known by name there is nothing to fit.
   if (left_out > 0 && band.filter.kind == NoiseShape::Kind::none)
-    fit.remedies.push_back({"band",
-                            alarm,
-                            fmt::format("coefficients from below {} Hz, {} of {} bins left out",
-                                        brief_text(band.top_hz, 4),
-                                        left_out,
-                                        bins.size()),
-                            left_out});
+    fit.remedies.push_back(
+        {"band",
+         alarm,
+         fmt::format("coefficients from {} {} Hz, {} of {} bins left out",
+                     band.bottom_hz > 0 ? "above" : "below",
+                     brief_text(band.bottom_hz > 0 ? band.bottom_hz : band.top_hz, 4),
+                     left_out,
+                     bins.size()),
+         left_out});
 }
 
 void report_high_pass(const Band& band, NoiseFit& fit) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/detail/record/cycles.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/spectrum/fft.hpp"
 
@@ -183,6 +184,14 @@ PooledPower record_power(std::span<const double> points,
   const std::span<const double> c = plan.transform(points);
   power.mean.reserve(end > first ? end - first : 0);
   for (std::uint64_t k = first; k < end; ++k) power.mean.push_back(c[k] * c[k]);
+  if (first > 1 || power.mean.empty()) return power;
+  const auto reach = static_cast<std::ptrdiff_t>(std::min(points.size(), detail::kCycleReach));
+  std::vector<double> head(c.begin(), c.begin() + reach);
+  power.cycles = detail::take_out_cycles(head, points.size());
+  if (power.cycles.empty()) return power;
+  power.without_cycles = power.mean;
+  for (std::size_t k = first; k < std::min<std::size_t>(end, head.size()); ++k)
+    power.without_cycles[k - first] = head[k] * head[k];
   return power;
 }
 

@@ -1,0 +1,21 @@
+#pragma once
+// Slow cycles of a record (heating, air conditioning, day and night), taken out of the coefficients of a transform.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libchar/fit/record/power_bins.hpp"
+
+namespace libchar::detail {
+
+/// As many coefficients as a slow cycle is looked for in, and its leak taken out of.
+inline constexpr std::size_t kCycleReach = 8192;
+
+/// The sines that stand out of the first coefficients of an orthonormal DCT-II of `length` points
+/// so far that what they leak reaches the slow end, where a line cannot be left out. They are
+/// subtracted from `coefficients`; none where nothing stands out.
+std::vector<PooledPower::Cycle> take_out_cycles(std::span<double> coefficients, std::size_t length);
+
+}  // namespace libchar::detail
