@@ -59,6 +59,14 @@ void report_warnings(Session& session, const libchar::Findings& warnings, const 
   session.warned_files.push_back(file);
 }
 
+void report_findings(Session& session,
+                     const std::string& channel,
+                     const std::vector<libchar::Finding>& findings) {
+  if (findings.empty()) return;
+  const std::string text = libchar::printable(channel) + ":\n" + libchar::findings_text(findings);
+  session.terminal.note(text.substr(0, text.size() - 1));
+}
+
 void refuse_strict(const Session& session) {
   if (!session.strict || session.warned_files.empty()) return;
   throw libchar::input_error("E0206", session.warned_files.front())

@@ -25,6 +25,10 @@ struct Session {
 
 /// Says the warnings of one input on stderr and remembers them for --strict.
 void report_warnings(Session& session, const libchar::LogInfo& info);
+/// What is known of a channel, at most five lines, the worst first.
+void report_findings(Session& session,
+                     const std::string& channel,
+                     const std::vector<libchar::Finding>& findings);
 void report_warnings(Session& session, const libchar::Findings& warnings, const std::string& file);
 
 /// With --strict nothing is written of an input that has warnings: throws where one was said.

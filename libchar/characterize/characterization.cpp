@@ -134,7 +134,7 @@ std::string stretch_sentence(const Stretch& stretch) {
 // no missing samples.
 
 /// Nothing that is said of the channel in the table's grid is about the sensor.
-void doubt(const Channel& channel, ChannelResult& result) {
+void doubt(const Channel& channel, bool alone, ChannelResult& result) {
   Finding slow =
       finding("slow_channel",
               fmt::format("The channel has a value in one of {} rows: in the grid of the "
@@ -142,7 +142,7 @@ void doubt(const Channel& channel, ChannelResult& result) {
                           channel.every),
               "in a table of faster rows it has no rate of its own");
   slow.severity = Severity::bad;
-  slow.help.push_back({"Read it alone.", {{"channels", channel.name}}});
+  if (alone) slow.help.push_back({"Read it alone.", {{"channels", channel.name}}});
   result.findings.push_back(std::move(slow));
 }
 
@@ -158,7 +158,8 @@ void read_slow_channels_alone(const std::string& path,
     if (result.log.channels[c].every > 1) slow.push_back(c);
   if (slow.empty() || result.channels.size() != result.log.channels.size()) return;
   if (read_once(path) || !options.temperature.empty() || result.channels.size() == 1) {
-    for (const std::size_t c : slow) doubt(result.log.channels[c], result.channels[c]);
+    const bool alone = options.temperature.empty() && result.channels.size() > 1;
+    for (const std::size_t c : slow) doubt(result.log.channels[c], alone, result.channels[c]);
     return;
   }
   const std::vector<std::string> in_log = names_in_log(path, options.reading);
@@ -206,7 +207,7 @@ Characterization characterize_source(const Source& source,
     if (stages.end() == next) break;
     next = stages.end();
   }
-  if (options.wanted.quality && options.data == SampleKind::rate) {
+  if (options.data == SampleKind::rate) {
     std::vector<Channel> channels;
     for (const ChannelResult& channel : result.channels) channels.push_back(channel.channel);
     judge_gravity(channels,

@@ -68,15 +68,12 @@ struct Judge {
   }
 
   void look_at_goodness(const NoiseFit& fit) {
-    const bool said = has(fit.findings, "misfit") || has(fit.findings, "digital_misfit");
+    const bool said = has(fit.findings, "misfit") || has(fit.findings, "digital_misfit") ||
+                      has(fit.findings, "power_law");
     if (const std::string letters = letters_with(fit, Status::misfit); !letters.empty() && !said)
       add("misfit",
           "The noise terms do not describe the recording: no coefficient is borne out.",
           "the noise terms do not describe the recording");
-    else if (fit.goodness.p < kDoubtful && !said)
-      add("unexplained",
-          goodness_sentence(fit.goodness),
-          "the model does not explain the spectrum (" + probability_text(fit.goodness.p) + ")");
     if (!fit.converged) add("not_converged", "The fit did not converge.");
   }
 
@@ -177,7 +174,7 @@ Tint tint_of(Rating rating) {
                                      : Tint::bad;
 }
 
-Judgement judge(const ChannelResult& channel) {
+std::vector<Finding> findings_of(const ChannelResult& channel) {
   Judge found{channel, {}};
   found.look_at_samples(channel.quality);  // the rest may follow from them
   if (channel.fit) found.look_at_fit(*channel.fit);
@@ -191,15 +188,21 @@ Judgement judge(const ChannelResult& channel) {
                             "moves_throughout"})
     if (has(found.out, cause))
       std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
-  if (!channel.fit && worst_of(found.out) != Severity::bad)
-    found.add("no_fit",
-              found.out.empty() ? "No noise coefficients were computed."
-                                : "No noise coefficients: " + as_part(found.out[0].sentence) + ".");
-  const Severity worst = worst_of(found.out);
+  return worst_first(std::move(found.out));
+}
+
+Judgement judge(const ChannelResult& channel) {
+  std::vector<Finding> found = findings_of(channel);
+  if (!channel.fit && worst_of(found) != Severity::bad)
+    found.push_back(finding("no_fit",
+                            found.empty()
+                                ? "No noise coefficients were computed."
+                                : "No noise coefficients: " + as_part(found[0].sentence) + "."));
+  const Severity worst = worst_of(found);
   const Rating rating = worst == Severity::bad       ? Rating::bad
                         : worst == Severity::caution ? Rating::caution
                                                      : Rating::good;
-  return {rating, worst_first(std::move(found.out))};
+  return {rating, worst_first(std::move(found))};
 }
 
 std::string goodness_sentence(const Goodness& g) {

@@ -32,6 +32,9 @@ struct Judgement {
 
 Judgement judge(const ChannelResult& channel);
 
+/// What is known of a channel and of what was computed of it, the worst first: for whoever prints a part.
+std::vector<Finding> findings_of(const ChannelResult& channel);
+
 /// Below this the residuals are not what the model leads one to expect in one record of a thousand.
 inline constexpr double kDoubtful = 1e-3;
 

@@ -62,6 +62,13 @@ void set_means(SensorModel& model, const NoiseFit& fit) {
   if (fit.temperature && fit.temperature->order > 0) set_temperature_terms(model, *fit.temperature);
 }
 
+/// What the reader found and a coefficient depends on.
+void add_findings_of(const LogInfo& log, SensorModel& model) {
+  for (const Finding& one : log.warnings.list())
+    if (!one.effects.empty()) model.findings.push_back(one);
+  model.findings = worst_first(std::move(model.findings));
+}
+
 }  // namespace
 
 SensorModel sensor_model_from_curve(const Channel& channel,
@@ -85,6 +92,7 @@ SensorModel sensor_model_from_curve(const Channel& channel,
   model.stretch_s = source.stretch_s;
   set_means(model, fit);
   model.findings = fit.findings;
+  add_findings_of(source, model);
   return model;
 }
 
@@ -96,9 +104,13 @@ SensorModel sensor_model_from(const ChannelResult& channel, const LogInfo& log) 
   set_saturation(model, channel.quality);
   model.mean = channel.quality.mean;
   set_tau_range(model, channel.allan);
-  for (const Remedy& remedy : fit.remedies)
-    model.remarks.push_back(remedy.kind + ": " + remedy.action);
+  for (const Remedy& remedy : fit.remedies) {
+    const std::string remark = remedy.kind + ": " + remedy.action;
+    if (std::find(model.remarks.begin(), model.remarks.end(), remark) == model.remarks.end())
+      model.remarks.push_back(remark);
+  }
   model.findings = judge(channel).findings;
+  add_findings_of(log, model);
   return model;
 }
 

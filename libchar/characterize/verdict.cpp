@@ -47,7 +47,7 @@ struct HeadlineRow {
 };
 constexpr HeadlineRow kHeadline[] = {
     {"misfit",
-     "unexplained",
+     "misfit",
      " It does not explain ",
      ": see the residuals there before using the intervals."},
     {"allan_disagrees",
@@ -78,7 +78,7 @@ std::string explained_sentence(const Characterization& result,
   const std::size_t n = judged.size();
   const auto good =
       static_cast<std::size_t>(std::count_if(judged.begin(), judged.end(), [](const Judgement& j) {
-        return !j.has("no_fit") && !j.has("misfit") && !j.has("unexplained");
+        return !j.has("no_fit") && !j.has("misfit");
       }));
   if (good < n)
     return fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);

@@ -122,6 +122,17 @@ std::vector<Finding> findings_of(const SensorModel& m) {
   return out;
 }
 
+// "use the longest still stretch (`still` auto), or ": its own remedy, else that of its kind; "" where there is none.
+std::string remedy_of(const Finding& one) {
+  std::string remedy;
+  const FindingKind* kind = find_finding_kind(one.code);
+  if (!one.help.empty())
+    remedy = as_part(one.help[0].sentence) + settings_text(one.help[0]);
+  else if (kind != nullptr)
+    remedy = as_part(std::string(kind->remedy));
+  return remedy.empty() ? "" : remedy + ", or ";
+}
+
 // A consumer takes what the file says for known: numbers that are not to be relied on are refused, what asks for a look
 // goes with a sentence.
 void answer_findings(const ExportTarget& target,
@@ -135,11 +146,9 @@ void answer_findings(const ExportTarget& target,
       const std::string what =
           fmt::format("{}: {}", printable(m->channel, 40), printable(one.sentence));
       if (one.severity == Severity::bad && !options.anyway)
-        throw input_error("E0594").says(what).hint(
-            one.help.empty()
-                ? "record again where the sensor is at rest, or export it with `anyway`"
-                : as_part(one.help[0].sentence) + settings_text(one.help[0]) +
-                      ", or export it with `anyway`");
+        throw input_error("E0594")
+            .says(what.ends_with('.') ? what.substr(0, what.size() - 1) : what)
+            .hint(remedy_of(one) + "export it with `anyway`");
       notes.push_back(what);
     }
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "libchar/characterize/compare/reported_characterization.hpp"
+#include "libchar/characterize/compare/reported_findings.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/refusal.hpp"
@@ -66,6 +67,7 @@ void read_document(FigureSource& out, const Document& document, const std::strin
   if (!known) refuse_document(file, format);
   check_format(document, file, format, 1);
   const MapReader map(document, file, "");
+  out.findings = detail::reported_findings(map);
   if (format == "allan") return add_allan_curves(out, map);
   if (format == "spectrum") return add_spectra(out, map);
   if (format == "noise-fit") return add_residuals(out, map);

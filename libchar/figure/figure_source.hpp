@@ -9,6 +9,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/characterize/curves/model_curve.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/spectrum/spectrum.hpp"
@@ -68,6 +69,7 @@ struct FigureSource {
   std::vector<SourceCurve> curves;
   std::vector<SourceResiduals> residuals;
   std::vector<SourceTrace> traces;
+  std::vector<Finding> findings;  ///< of the channels (subject), the worst first; no notes
   std::shared_ptr<const ReplayReport> replay;  ///< the report of a replay; null: it is none
 };
 

@@ -12,6 +12,10 @@
 #include "libchar/figure/figure_source.hpp"
 
 namespace libchar {
+namespace detail {
+/// More curves than these have no colours of their own in one figure.
+inline constexpr std::size_t kMostCurves = 35;
+}  // namespace detail
 
 struct FigureOptions {
   std::string kind;  ///< a word of figure_kinds(); empty: the first that the source has

@@ -391,11 +391,13 @@ void judge_values(const Watch& watch,
   for (std::size_t c = 0; c < watch.seen.size(); ++c) {
     if (!watch.presence[c].slow()) continue;
     info.channels[c].every = watch.presence[c].usual;
-    warnings.add(
+    Finding& slow = warnings.add(
         "slow_channel",
-        "channels slower than the rows of their table: most of their samples are missing "
-        "here; read alone (`channels` NAME) they have a grid of their own",
+        "channels slower than the rows of their table: most of their samples are missing here",
         fmt::format("channel {}, every {} rows", info.channels[c].name, watch.presence[c].usual));
+    if (slow.help.empty())
+      slow.help.push_back(
+          {"Read it alone: it has a grid of its own.", {{"channels", info.channels[c].name}}});
   }
 }
 

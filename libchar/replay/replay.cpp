@@ -559,6 +559,19 @@ void Replay::refuse_sizes() const {
       .hint("give the sensors a `scale` and a `unit`");
 }
 
+// What the methods that are recommended say of themselves is about the verdict.
+void add_doubts_of_chosen(ReplayResult& out) {
+  for (std::size_t i = 0; i < out.algorithms.size(); ++i) {
+    const AlgorithmResult& a = out.algorithms[i];
+    if (!(out.best && *out.best == i) && a.label != out.best_fusion) continue;
+    for (const Finding& one : a.remarks.list())
+      if (one.severity != Severity::note) {
+        Finding& added = out.warnings.add(one.code, one.sentence, {}, one.count);
+        added.subject = a.label;
+      }
+  }
+}
+
 ReplayResult Replay::collect() {
   ScoreOptions scoring;
   for (const std::int64_t start : plan_.array.section_starts)
@@ -585,6 +598,7 @@ ReplayResult Replay::collect() {
   if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, out.end_s());
   if (steps_) note_step_noise(steps_->result(), learnt_);
   out.learnt = learnt_;
+  add_doubts_of_chosen(out);
   out.learnt.findings = out.warnings.list();
   if (out.best && !out.offsets_decide) out.learnt.recommended = out.algorithms[*out.best].label;
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);

@@ -15,6 +15,7 @@
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/export/exports.hpp"
+#include "libchar/figure/make_figure.hpp"
 
 namespace sensorchar {
 namespace {
@@ -98,13 +99,13 @@ bool exports_to(const Characterization& result, const char* target) {
   }
 }
 
-/// " -c gyro_x,gyro_y": curves in unlike units share no axis.
+/// " -c gyro_x,gyro_y": curves in unlike units share no axis, and no figure has room for more than so many.
 std::string alike_flag(const Characterization& result, const std::string& unit) {
   std::string names;
   std::size_t alike = 0;
   for (const ChannelResult& c : result.channels) {
     if (c.channel.unit != unit) continue;
-    names += (alike++ == 0 ? "" : ",") + c.channel.name;
+    if (++alike <= detail::kMostCurves) names += (alike == 1 ? "" : ",") + c.channel.name;
   }
   return alike == result.channels.size() ? "" : " -c " + shell_word(names);
 }

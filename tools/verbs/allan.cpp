@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/log_devices.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
@@ -89,6 +90,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
   report_warnings(session, result.log);
   std::vector<Channel> channels;
   std::vector<AllanCurve> curves;
+  std::vector<std::vector<Finding>> known, findings;  // a channel; a curve
   bool any = false;
   for (const ChannelResult& c : result.channels) {
     const auto note = [&](const std::string& text) {
@@ -96,12 +98,14 @@ void run_allan(Session& session, const AllanVerb& verb) {
     };
     const auto take = [&](const AllanCurve& curve) {
       any = any || !curve.points.empty();
+      findings.push_back(known.back());
       channels.push_back(c.channel);
       curves.push_back(curve);
       const std::string which = c.more_allan.empty() ? "" : std::string(name_of(curve.type)) + ": ";
       for (const std::string& text : curve.notes) note(which + text);
     };
-    for (const Finding& one : c.findings) note(one.sentence);
+    known.push_back(findings_of(c));
+    report_findings(session, c.channel.name, known.back());
     take(c.allan);
     for (const AllanCurve& curve : c.more_allan) take(curve);
   }
@@ -119,7 +123,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
     text = terminal_plots(drawn);
   } else if (verb.json) {
     Json document = document_head(session, "allan", {&result.log});
-    document.update(allan_json(channels, curves));
+    document.update(allan_json(channels, curves, findings));
     text = dump_json(document);
   } else {
     text = allan_csv(channels, curves);

@@ -8,6 +8,7 @@
 
 #include "analysis_options.hpp"
 #include "libchar/characterize/curves/curve_table_fit.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/file/file_name.hpp"
 #include "libchar/core/file/output_files.hpp"
@@ -45,10 +46,13 @@ std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& 
   if (result.still) session.terminal.note(printable(result.still->sentence));
   std::vector<ChannelFit> fits;
   for (ChannelResult& c : result.channels) {
-    for (const Finding& one : c.findings)
-      session.terminal.note(
-          fmt::format("{}: {}", printable(c.channel.name), printable(one.sentence)));
-    if (c.fit) fits.push_back({c.channel, std::move(*c.fit)});
+    std::vector<Finding> found = findings_of(c);
+    if (!c.fit) {
+      report_findings(session, c.channel.name, found);
+      continue;
+    }
+    fits.push_back({c.channel, std::move(*c.fit)});
+    fits.back().fit.findings = std::move(found);
   }
   return fits;
 }

@@ -61,6 +61,11 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
   if (info.time.rate_hz <= 0)
     return fmt::format(
         "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags);
+  const bool hopeless = std::all_of(
+      inspection.quality.begin(), inspection.quality.end(), [](const libchar::ChannelQuality& q) {
+        return libchar::has(q.findings, "constant") || libchar::has(q.findings, "no_value");
+      });
+  if (hopeless || info.warnings.find("implausible_magnitude") != nullptr) return "";
   return fmt::format("  next: sensorchar characterize {}{}{} -o {}\n",
                      log,
                      flags,

@@ -74,6 +74,8 @@ void run_psd(Session& session, const PsdVerb& verb) {
   session.terminal.clear();
   for (const std::string& note : spectra.notes) session.terminal.note(note);
   report_warnings(session, spectra.log);
+  for (const ChannelSpectrum& c : spectra.channels)
+    report_findings(session, c.channel.name, c.findings);
   std::string text;
   if (verb.plot) {
     std::vector<SourceCurve> drawn;

@@ -143,8 +143,8 @@ void add_faults(const SimulateVerb& verb, ArraySimulation& simulation) {
     simulation.faults.push_back(parse_fault(fault, names));
 }
 
-// What the command line says on top of models or scene.
-void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& simulation) {
+// What the command line says on top of models or scene, and what was found about it.
+Findings apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& simulation) {
   set_length(verb, simulation);
   refuse_beyond_disk(verb, simulation);
   if (verb.seed_given) simulation.seed = verb.seed;
@@ -159,6 +159,7 @@ void apply_options(Session& session, const SimulateVerb& verb, ArraySimulation& 
     read_recorded(verb, *simulation.temperature, "--temperature", simulation, warnings);
   warnings.merge(late_faults(simulation));
   session.terminal.warn(warnings, "simulate");
+  return warnings;
 }
 
 // Where log and scene go; neither is an input.
@@ -202,6 +203,15 @@ void simulate_again(SimulateVerb& verb, Scene& scene) {
   scene.recording.clear();
 }
 
+// What is known of a model goes with what is simulated of it.
+void report_models(Session& session, const ArraySimulation& simulation) {
+  for (const SimulatedSensor& sensor : simulation.sensors) {
+    std::vector<Finding> found = sensor.model.findings;
+    std::erase_if(found, [](const Finding& one) { return one.severity == Severity::note; });
+    report_findings(session, sensor.name, found);
+  }
+}
+
 // The scene that is simulated; of models, an empty one.
 Scene read_source(Session& session, SimulateVerb& verb) {
   std::vector<std::string> files;
@@ -220,6 +230,7 @@ Scene read_source(Session& session, SimulateVerb& verb) {
           .says("the scene says how many devices there are (count)");
   } else {
     scene.simulate = simulation_of_models(verb.sources, {verb.rate_hz, verb.devices});
+    report_models(session, *scene.simulate);
     scene.file = verb.sources[0];
     place_outputs(verb, scene);
   }
@@ -246,12 +257,14 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   take_standard_output(verb);
   const Scene scene = read_source(session, verb);
   ArraySimulation simulation = *scene.simulate;
-  apply_options(session, verb, simulation);
+  Findings found = scene.warnings;
+  found.merge(apply_options(session, verb, simulation));
   std::vector<LogInfo> read;  // before the outputs take their places
   std::vector<const LogInfo*> inputs;
   read.reserve(verb.sources.size());
   inputs.reserve(verb.sources.size());
   for (const std::string& source : verb.sources) read.push_back(document_info(source));
+  read.front().warnings.merge(found);
   for (const LogInfo& one : read) inputs.push_back(&one);
   const SimulatedRecording recording{verb.output,
                                      verb.no_scene ? "" : verb.scene_path,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "libchar/characterize/compare/reported_findings.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/document/schema.hpp"
@@ -93,6 +94,7 @@ ReportedCharacterization read_summary(const Document& document, const std::strin
     if (out.find(out.channels.back().name) != &out.channels.back())
       fit.refuse("channels", "two channels have one name: " + out.channels.back().name);
   }
+  out.findings = detail::reported_findings(map);
   return out;
 }
 

@@ -27,6 +27,7 @@ struct ReportedCharacterization {
   std::string program;    ///< version of the program that wrote it
   std::string recording;  ///< what was characterized, in words
   std::vector<ReportedChannel> channels;
+  std::vector<Finding> findings;  ///< of the channels (subject), the worst first; no notes
 
   const ReportedChannel* find(std::string_view name) const;
 };

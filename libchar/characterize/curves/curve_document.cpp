@@ -121,6 +121,8 @@ const Fields<AllanOfChannel>& allan_channel_fields() {
       list_of<&T::noise_types>("noise_types", noise_type_fields(), {.meaning = "of a clock"}),
       field<&T::data_sheet>("data_sheet", {.meaning = "of a sensor at its limits"}),
       field<&T::type>("type", {.meaning = "where there are several"}),
+      list_of<&T::findings>(
+          "findings", finding_fields(), {.meaning = "what is known of the channel"}),
   };
   return rows;
 }
@@ -172,6 +174,11 @@ const Fields<SpectrumOfChannel>& spectrum_channel_fields() {
                          line_fields(),
                          {.written = Written::if_known,
                           .known = when<[](const T& one) { return one.with_lines; }>}),
+      list_of<&T::findings>("findings",
+                            finding_fields(),
+                            {.meaning = "what is known of the channel",
+                             .written = Written::if_known,
+                             .known = when<[](const T& one) { return !one.findings.empty(); }>}),
   });
   return rows;
 }

@@ -29,6 +29,7 @@ struct AllanOfChannel {
   std::vector<NoiseType> noise_types;
   std::vector<double> data_sheet;  ///< a sensor at its limits, at the same points
   std::string type;                ///< where a document has several
+  std::vector<Finding> findings;
 };
 
 struct AllanDocument {
@@ -44,6 +45,7 @@ struct SpectrumOfChannel {
   PredictedCurve predicted;
   std::vector<SpectralLine> lines;
   bool with_lines = false;  ///< they were asked for
+  std::vector<Finding> findings;
 };
 
 struct SpectrumDocument {

@@ -27,6 +27,7 @@ struct ChannelSpectrum {
   Channel channel;
   Spectrum spectrum;
   std::vector<SpectralLine> lines;
+  std::vector<Finding> findings = {};  ///< what is known of the samples, the worst first
 };
 
 struct LogSpectra {

@@ -424,8 +424,13 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
   result.channel.unit = unit_of_rate(channel.unit);
   found_ = read_.sums.meters.quality.finish();
   std::erase_if(found_.findings, [this](const Finding& one) { return is_answered(one); });
+  for (Finding& one : found_.findings)
+    for (Finding::Help& help : one.help)
+      std::erase_if(help.options, [this](const Finding::Setting& setting) {
+        return setting.option == "data" && options_.data != SampleKind::rate;
+      });
+  result.quality = quality_of_rate();
   if (options_.wanted.quality) {
-    result.quality = quality_of_rate();
     result.trace = read_.sums.meters.trace.finish();
     result.trace_unit = channel.unit;
   }
@@ -437,7 +442,6 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
     result.findings.push_back(finding("no_fit", "no curves and no fit: " + why));
     return result;
   }
-  if (!options_.wanted.quality) add_findings(found_.findings, result);  // else the quality says so
   doubt_frequency(result);
   is_whole_ = found_.samples + found_.missing <= kLeafSamples;
   kept_ = std::move(is_whole_ ? read_.sums.kept : read_.all);

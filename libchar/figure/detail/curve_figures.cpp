@@ -19,7 +19,6 @@ namespace {
 // More bands than these hide each other.
 constexpr std::size_t kMostBands = 3;
 // More lines than these cannot be told apart.
-constexpr std::size_t kMostCurves = 35;
 constexpr std::size_t kManyPoints = 60;
 
 struct ChosenCurve {
@@ -136,11 +135,11 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
                 b)
           .hint("compute both in the same way");
   }
-  if (chosen.size() > kMostCurves)
+  if (chosen.size() > detail::kMostCurves)
     throw usage_error("E0984")
         .says("{} curves: more than {} cannot be told apart in one figure",
               chosen.size(),
-              kMostCurves)
+              detail::kMostCurves)
         .hint("choose some with `channels`");
 }
 

@@ -248,6 +248,8 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   else
     add(single.text);
   add(alone_sentence(r, best));
+  for (const Finding& one : best.remarks.list())
+    if (one.severity != Severity::note) add("Caution: " + one.sentence + ".");
   add(without_reference_sentence(r, best, costs));
   add(taught_sentence(r));
   add(equals_sentence(r, best, costs));

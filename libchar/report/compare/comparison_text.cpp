@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/table/table.hpp"
 #include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -157,7 +159,10 @@ Json summary_json(const ReportedCharacterization& s) {
   return {{"file", json_text(s.file)},
           {"format", s.format},
           {"program", s.program.empty() ? Json(nullptr) : Json(json_text(s.program))},
-          {"recording", json_text(s.recording)}};
+          {"recording", json_text(s.recording)},
+          {"findings", list_json(s.findings, [](const Finding& one) {
+             return document_of(finding_fields(), one);
+           })}};
 }
 
 Json side_json(const Coefficient& c) {
@@ -178,6 +183,24 @@ Json compared_json(const ComparedTerm& t, const std::string& unit) {
           {"p", json_number(t.p)},
           {"difference", name_of(t.difference)},
           {"sentence", json_text(t.sentence)}};
+}
+
+/// "caution: A, gyro_x: SENTENCE", at most five of each side.
+std::vector<std::string> known_of_sides(const CharacterizationComparison& comparison) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> out;
+  for (const auto& [side, findings] :
+       {std::pair{"A", &comparison.a.findings}, std::pair{"B", &comparison.b.findings}}) {
+    for (std::size_t i = 0; i < std::min(kMost, findings->size()); ++i)
+      out.push_back(fmt::format("{}: {}, {}: {}",
+                                name_of((*findings)[i].severity),
+                                side,
+                                (*findings)[i].subject,
+                                with_help((*findings)[i])));
+    if (findings->size() > kMost)
+      out.push_back(fmt::format("{}: and {} more", side, findings->size() - kMost));
+  }
+  return out;
 }
 
 std::string where_is(const ComparedChannel& c) {
@@ -228,15 +251,21 @@ std::string comparison_text(const CharacterizationComparison& comparison, std::s
                                 printable(comparison.a.recording),
                                 printable(comparison.b.file),
                                 printable(comparison.b.recording));
-  return out + "\n" + terminal_table(compared_table(comparison), {width}, "") + "\n" +
+  out += "\n" + terminal_table(compared_table(comparison), {width}, "") + "\n" +
          printable(comparison.verdict) + "\n";
+  for (const std::string& line : known_of_sides(comparison)) out += "  " + printable(line) + "\n";
+  return out;
 }
 
 std::string comparison_markdown(const CharacterizationComparison& comparison) {
-  return "# Two characterizations\n\n" + markdown_text(comparison.verdict) +
-         "\n\n- A: " + markdown_text(comparison.a.file) +
-         "\n- B: " + markdown_text(comparison.b.file) + "\n\n" +
-         table_text(compared_table(comparison));
+  std::string out = "# Two characterizations\n\n" + markdown_text(comparison.verdict) +
+                    "\n\n- A: " + markdown_text(comparison.a.file) +
+                    "\n- B: " + markdown_text(comparison.b.file) + "\n\n" +
+                    table_text(compared_table(comparison));
+  const std::vector<std::string> known = known_of_sides(comparison);
+  if (!known.empty()) out += "\nWhat is known of them:\n\n";
+  for (const std::string& line : known) out += "- " + markdown_text(line) + "\n";
+  return out;
 }
 
 namespace {

@@ -49,7 +49,9 @@ std::vector<DeviationType> types_of(const std::vector<AllanCurve>& curves) {
 
 }  // namespace
 
-Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
+Json allan_json(const std::vector<Channel>& channels,
+                const std::vector<AllanCurve>& curves,
+                const std::vector<std::vector<Finding>>& findings) {
   const std::vector<DeviationType> types = types_of(curves);
   AllanDocument out;
   out.type = name_of(types.empty() ? DeviationType::oadev : types[0]);
@@ -58,6 +60,7 @@ Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCur
   for (std::size_t i = 0; i < std::min(channels.size(), curves.size()); ++i) {
     out.channels.push_back(allan_of_channel(channels[i], curves[i]));
     if (types.size() > 1) out.channels.back().type = name_of(curves[i].type);
+    if (i < findings.size()) out.channels.back().findings = findings[i];
   }
   return document_of(allan_fields(), out);
 }
@@ -105,6 +108,7 @@ Json spectra_json(const LogSpectra& spectra, const LogSpectraOptions& options) {
         spectrum_of_channel(c.channel, c.spectrum, spectrum_intervals(c.spectrum, 0.95));
     one.with_lines = options.lines;
     one.lines = c.lines;
+    one.findings = c.findings;
     document["channels"].push_back(document_of(spectrum_channel_fields(), one));
   }
   return document;

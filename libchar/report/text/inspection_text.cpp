@@ -117,7 +117,9 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
   text += "  read as " + dialect + "\n";
   for (const std::string& guess : info.guesses) text += "  guessed: " + printable(guess) + "\n";
   for (const Finding& warning : info.warnings.list())
-    text += "  warning: " + sentence_of(warning) + "\n";
+    text += fmt::format("  {}: {}\n",
+                        warning.severity == Severity::note ? "note" : "warning",
+                        sentence_of(warning));
   text += terminal_table(is_listing(info) ? topic_table(info) : channel_table(inspection), {width});
   return text + remarks(inspection);
 }

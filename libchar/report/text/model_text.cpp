@@ -34,7 +34,7 @@ std::string model_text(const SensorModel& m, const TextLook& look) {
                         duration_text(m.tau_min_s),
                         duration_text(m.tau_max_s));
   for (const std::string& remark : m.remarks) text += fmt::format("  {}\n", printable(remark));
-  return text;
+  return text + findings_text(m.findings, 5, look.colours);
 }
 
 }  // namespace libchar
