@@ -85,7 +85,7 @@ def main():
         page = ["# Performance", "",
                 "Written by `.ci/figures performance`: the programs of `tests/bench`, as they print. Where the time "
                 "of the main job goes, and what was tried: "
-                "[theory/speed.md](theory/speed.md). Error against time: [accuracy.md](accuracy.md).", "",
+                "[dev/speed.md](dev/speed.md). Error against time: [accuracy.md](accuracy.md).", "",
                 machine(build) + ".", ""]
         for row in SECTIONS:
             page += section(*row, values)
