@@ -16,7 +16,7 @@ import structure  # noqa: E402
 from gates import cpp, rooms  # noqa: E402
 
 CEILINGS = pathlib.Path(__file__).resolve().parent / "gates/words.tsv"
-COUNTED = (r"(?:algorithm|axis|bin|block|byte|cell|channel|class|column|core|curve|day|decade|device|draw|estimate"
+COUNTED = (r"(?:algorithm|axis|bin|block|byte|cell|channel|class|column|core|curve|day|decade|device|draw"
            r"|figure|file|finding|floor|folder|hour|input|instant|interval|kind|line|log|message|method|minute|model"
            r"|module|number|octave|page|pair|part|point|record|recording|row|run|sample|scene|second|section|sensor"
            r"|step|target|task|term|test|topic|unit|value|verb|word)")
@@ -27,8 +27,9 @@ UNITS = r"(?:ns|µs|ms|s|B|bytes|KiB|MiB|MB|GB|%)"
 # Rule, what is refused, what to write instead, and where it does not apply: "table" or "".
 RULES = [
     ("per", rf"\b(?:an?|one)\s+(?:{BETWEEN}\s+)?{BETWEEN}(?<!\w[a-rt-z]s)\s+an?\s+{COUNTED}\b"
-     rf"(?!\s+(?:or|later|after)\b)|(?:\b(?:two|three|four|five|six|ten)|\d)\s+(?:{BETWEEN}\s+)?(?:[a-z-]+s|{UNITS})"
-     rf"\s+an?\s+{COUNTED}\b|\b{UNITS}\s+an?\s+{COUNTED}\b|`\s+an?\s+{COUNTED}\b(?=\s*[,;.:|)])", "per", ""),
+     rf"(?!\s+(?:or|later|after)\b)|\bone\s+an?\s+{COUNTED}\b"
+     rf"|(?:\b(?:two|three|four|five|six|ten)|\d)\s+(?:{BETWEEN}\s+)?(?:[a-z-]+s|{UNITS})"
+     rf"\s+an?\s+{COUNTED}\b|\b{UNITS}\s+an?\s+{COUNTED}\b|\b(?:an?|one)\s+`[^`]*`\s+an?\s+{COUNTED}\b", "per", ""),
     ("whom", r"\bwhom\b", "a noun", ""),
     ("is none", r"\b(?:is|are|was|were|be)\s+none\b|\bnone\s+(?:that|who)\b", "is not a …, cannot be …", ""),
     ("is no", r"(?<!\bthere )(?<!\bthere\n)\b(?:is|are|was|were)\s+no\s+(?!longer\b|more\b|less\b|worse\b|better\b"
@@ -54,8 +55,8 @@ def blanks(match):
 
 
 def prose_of_page(text):
-    """Without code, formulas, pictures and the targets of links, in the same places."""
-    text = re.sub(r"^ *```.*?^ *```|^(?: {4}|\t)[^\n]*$|<!--.*?-->|\$\$.*?\$\$", blanks, text, flags=re.S | re.M)
+    """Without code, formulas, quotations, pictures and the targets of links, in the same places."""
+    text = re.sub(r"^ *```.*?^ *```|^(?: {4}|\t|>)[^\n]*$|<!--.*?-->|\$\$.*?\$\$", blanks, text, flags=re.S | re.M)
     text = re.sub(r"`(?:[^`\n]|\n(?!\n))*`", lambda code: re.sub(r"[^`\n]", "x", code[0]), text)
     return re.sub(r"\]\([^)]*\)|\$[^$\n]+\$|<[^>\n]*>", blanks, text)
 
