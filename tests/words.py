@@ -21,15 +21,15 @@ COUNTED = (r"(?:algorithm|axis|bin|block|byte|cell|channel|class|column|core|cur
            r"|module|number|octave|page|pair|part|point|record|recording|row|run|sample|scene|second|section|sensor"
            r"|step|target|task|term|test|topic|unit|value|verb|word)")
 # Words that make "a … a" a phrase of another kind.
-BETWEEN = (r"(?!(?:a|an|and|as|at|before|behind|but|by|does|for|from|had|has|have|in|into|is|of|on|once|or|over|per"
-           r"|share|than|that|to|twice|under|was|when|where|which|with|within|without)\b)[\w/-]+")
+BETWEEN = (r"(?!(?:a|an|and|as|at|before|behind|but|by|does|for|from|had|has|have|in|inside|into|is|of|on|once|or|over"
+           r"|per|share|than|that|to|twice|under|was|when|where|which|with|within|without)\b)[\w/-]+")
+EACH = rf"an?\s+{COUNTED}\b(?!\s+(?:or|later|after|apart|before)\b)"
 UNITS = r"(?:ns|µs|ms|s|B|bytes|KiB|MiB|MB|GB|%)"
 # Rule, what is refused, what to write instead, and where it does not apply: "table" or "".
 RULES = [
-    ("per", rf"\b(?:an?|one)\s+(?:{BETWEEN}\s+)?{BETWEEN}(?<!\w[a-rt-z]s)\s+an?\s+{COUNTED}\b"
-     rf"(?!\s+(?:or|later|after)\b)|\bone\s+an?\s+{COUNTED}\b"
-     rf"|(?:\b(?:two|three|four|five|six|ten)|\d)\s+(?:{BETWEEN}\s+)?(?:[a-z-]+s|{UNITS})"
-     rf"\s+an?\s+{COUNTED}\b|\b{UNITS}\s+an?\s+{COUNTED}\b|\b(?:an?|one)\s+`[^`]*`\s+an?\s+{COUNTED}\b", "per", ""),
+    ("per", rf"\b(?:an?|one)\s+(?:{BETWEEN}\s+)?{BETWEEN}(?<!\w[a-rt-z]s)\s+{EACH}|\bone\s+{EACH}"
+     rf"|(?:\b(?:two|three|four|five|six|ten)|\d)\s+(?:{BETWEEN}(?<!s)\s+)?(?:[a-z-]+s|{UNITS})\s+{EACH}"
+     rf"|\b{UNITS}\s+{EACH}|\b(?:an?|one)\s+`[^`]*`\s+{EACH}", "per", ""),
     ("whom", r"\bwhom\b", "a noun", ""),
     ("is none", r"\b(?:is|are|was|were|be)\s+none\b|\bnone\s+(?:that|who)\b", "is not a …, cannot be …", ""),
     ("is no", r"(?<!\bthere )(?<!\bthere\n)\b(?:is|are|was|were)\s+no\s+(?!longer\b|more\b|less\b|worse\b|better\b"
@@ -43,7 +43,7 @@ RULES = [
     ("of which", r"\bof\s+(?:which|whose)\b|\bof\s+those\s+(?:of|that|which|who|in|with)\b", "of, or a new sentence",
      ""),
     ("exponent", r"(?<![\w.])\d+(?:\.\d+)?e[-+]?\d+\b", "an SI prefix or a word; digits", "table"),
-    ("digits", r"(?<![\w.^/-])\d+\.\d+(?![\w.]*[\w/-])", "at most four digits", "table"),
+    ("digits", r"(?<![\w.^/-])(?<!arXiv )\d+\.\d+(?![\w.]*[\w/-])", "at most four digits", "table"),
 ]
 # Of a command's help alone: options are noun phrases.
 QUESTION = ("question", r"[a-z]\?(?=\s*(?:\(default|$))", "an imperative or a noun phrase", "")
