@@ -23,11 +23,12 @@ COUNTED = (r"(?:algorithm|axis|bin|block|byte|cell|channel|class|column|core|cur
 # Words that make "a … a" a phrase of another kind.
 BETWEEN = (r"(?!(?:a|an|and|as|at|before|behind|but|by|does|for|from|had|has|have|in|inside|into|is|of|on|once|or|over"
            r"|per|share|than|that|to|twice|under|was|when|where|which|with|within|without)\b)[\w/-]+")
-EACH = rf"an?\s+{COUNTED}\b(?!\s+(?:or|later|after|apart|before)\b)"
+EACH = rf"an?\s+{COUNTED}\b(?!-|\s+(?:or|later|after|apart|before)\b)"
 UNITS = r"(?:ns|µs|ms|s|B|bytes|KiB|MiB|MB|GB|%)"
 # Rule, what is refused, what to write instead, and where it does not apply: "table" or "".
 RULES = [
-    ("per", rf"\b(?:an?|one)\s+(?:{BETWEEN}\s+)?{BETWEEN}(?<!\w[a-rt-z]s)\s+{EACH}|\bone\s+{EACH}"
+    ("per", rf"(?<!\b[Ii]n )(?<!\b[Ff]or )\b(?:an?|one)\s+(?:{BETWEEN}\s+)?{BETWEEN}(?<!\w[a-rt-z]s)\s+{EACH}"
+     rf"|\bone\s+{EACH}"
      rf"|(?:\b(?:two|three|four|five|six|ten)|\d)\s+(?:{BETWEEN}(?<!s)\s+)?(?:[a-z-]+s|{UNITS})\s+{EACH}"
      rf"|\b{UNITS}\s+{EACH}|\b(?:an?|one)\s+`[^`]*`\s+{EACH}", "per", ""),
     ("whom", r"\bwhom\b", "a noun", ""),
