@@ -1,11 +1,13 @@
 """Holds the English of every text that people read: plain syntax, the field's terms, numbers written for people.
 
 usage: words.py ROOT [--lower] [--list [KEY]]
-Reads README.md, the pages of docs/, the texts of findings, the string literals of libchar/ and tools/ and the
-comments of public headers. RULES lists what is refused and what to write instead. gates/words.tsv lists where a
-pattern may still occur, and how often, with a reason: a number there may fall, never grow, and --lower lowers it to
-what is there. --list prints each occurrence (of the keys that begin with KEY).
+Reads README.md, the pages of docs/ and fixtures/, the texts of findings, the documentation of the Python module, the
+string literals of libchar/ and tools/ and the comments of public headers. RULES lists what is refused and what to
+write instead. gates/words.tsv lists where a pattern may still occur, and how often, with a reason: a number there may
+fall, never grow, and --lower lowers it to what is there. --list prints each occurrence (of the keys that begin with
+KEY).
 """
+import ast
 import collections
 import pathlib
 import re
@@ -32,7 +34,7 @@ RULES = [
      rf"|(?:\b(?:two|three|four|five|six|ten)|\d)\s+(?:{BETWEEN}(?<!s)\s+)?(?:[a-z-]+s|{UNITS})\s+{EACH}"
      rf"|\b{UNITS}\s+{EACH}|\b(?:an?|one)\s+`[^`]*`\s+{EACH}", "per", ""),
     ("whom", r"\bwhom\b", "a noun", ""),
-    ("is none", r"\b(?:is|are|was|were|be)\s+none\b|\bnone\s+(?:that|who)\b", "is not a …, cannot be …", ""),
+    ("is none", r"\b(?:[Ii]s|[Aa]re|was|were|be)\s+none\b|\bnone\s+(?:that|who)\b", "is not a …, cannot be …", ""),
     ("is no", r"(?<!\bthere )(?<!\bthere\n)\b(?:is|are|was|were)\s+no\s+(?!longer\b|more\b|less\b|worse\b|better\b"
      r"|\w+er\s+than\b)", "is not a …, does not have …", ""),
     ("has not", r"\b(?:has|have|had)\s+not(?=\s*(?:[.,;:)]|$)|\s+(?:the|an?|and|or|but)\b)", "does not have", ""),
@@ -48,7 +50,8 @@ RULES = [
 ]
 # Of a command's help alone: options are noun phrases.
 QUESTION = ("question", r"[a-z]\?(?=\s*(?:\(default|$))", "an imperative or a noun phrase", "")
-PATTERNS = {name: re.compile(pattern, re.I if name != "per" else 0) for name, pattern, *_ in [*RULES, QUESTION]}
+PATTERNS = {name: re.compile(pattern, 0 if name in ("per", "is none") else re.I)
+            for name, pattern, *_ in [*RULES, QUESTION]}
 
 
 def blanks(match):
@@ -57,7 +60,8 @@ def blanks(match):
 
 def prose_of_page(text):
     """Without code, formulas, quotations, pictures and the targets of links, in the same places."""
-    text = re.sub(r"^ *```.*?^ *```|^(?: {4}|\t|>)[^\n]*$|<!--.*?-->|\$\$.*?\$\$", blanks, text, flags=re.S | re.M)
+    text = re.sub(r"^ *```.*?^ *```|^(?: {4}|\t|>)[^\n]*$|<!--.*?-->|\$\$.*?\$\$", blanks, text,
+                  flags=re.S | re.M)
     text = re.sub(r"`(?:[^`\n]|\n(?!\n))*`", lambda code: re.sub(r"[^`\n]", "x", code[0]), text)
     return re.sub(r"\]\([^)]*\)|\$[^$\n]+\$|<[^>\n]*>", blanks, text)
 
@@ -95,13 +99,18 @@ def comments(text):
 
 def texts(root):
     """(key of its ceiling, place, first line, text, rules)"""
-    pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
+    pages = [root / "README.md", *sorted([*(root / "docs").rglob("*.md"), *(root / "fixtures").rglob("*.md")])]
     for path in pages:
         name = path.relative_to(root).as_posix()
         yield name, name, 1, prose_of_page(path.read_text()), RULES
     for number, line in enumerate((root / "libchar/core/findings.tsv").read_text().splitlines(), 1):
         if not line.startswith("#"):
             yield "libchar/core/findings.tsv", "libchar/core/findings.tsv", number, line, RULES
+    for path in sorted((root / "tools/python").rglob("*.py")):
+        name = path.relative_to(root).as_posix()
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield name, name, node.lineno, node.value, RULES
     tree = structure.Tree(root)
     for path, text in tree.cpp("libchar", "tools").items():
         floor = "/".join(path.split("/")[:2]) if path.startswith("libchar/") else "tools"
