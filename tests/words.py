@@ -24,17 +24,18 @@ COUNTED = (r"(?:algorithm|axis|bin|block|byte|cell|channel|class|column|core|cur
            r"|step|target|task|term|test|topic|unit|value|verb|word)")
 # Words that make "a … a" a phrase of another kind.
 BETWEEN = (r"(?!(?:a|an|and|as|at|before|behind|but|by|does|for|from|had|has|have|in|inside|into|is|of|on|once|or|over"
-           r"|per|share|than|that|to|twice|under|was|when|where|which|with|within|without)\b)[\w/-]+")
+           r"|per|took|share|than|that|to|twice|under|was|when|where|which|with|within|without)\b)[\w/-]+")
 EACH = rf"an?\s+{COUNTED}\b(?!-|\s+(?:or|later|after|apart|before)\b)"
 UNITS = r"(?:ns|µs|ms|s|B|bytes|KiB|MiB|MB|GB|%)"
 # Rule, what is refused, what to write instead, and where it does not apply: "table" or "".
 RULES = [
-    ("per", rf"(?<!\b[Ii]n )(?<!\b[Ff]or )\b(?:an?|one)\s+(?:{BETWEEN}\s+)?{BETWEEN}(?<!\w[a-rt-z]s)\s+{EACH}"
+    ("per", rf"(?<!\b[Ii]n )(?<!\b[Ff]or )(?<!\bof )\b(?:an?|one)\s+(?:{BETWEEN}\s+)?{BETWEEN}(?<!\w[a-rt-z]s)\s+{EACH}"
      rf"|\bone\s+{EACH}"
      rf"|(?:\b(?:two|three|four|five|six|ten)|\d)\s+(?:{BETWEEN}(?<!s)\s+)?(?:[a-z-]+s|{UNITS})\s+{EACH}"
      rf"|\b{UNITS}\s+{EACH}|\b(?:an?|one)\s+`[^`]*`\s+{EACH}", "per", ""),
     ("whom", r"\bwhom\b", "a noun", ""),
-    ("is none", r"\b(?:[Ii]s|[Aa]re|was|were|be)\s+none\b|\bnone\s+(?:that|who)\b", "is not a …, cannot be …", ""),
+    ("is none", r"(?<!\b[Tt]here )\b(?:[Ii]s|[Aa]re|was|were|be)\s+none\b|\bnone\s+(?:that|who)\b",
+     "is not a …, cannot be …", ""),
     ("is no", r"(?<!\bthere )(?<!\bthere\n)\b(?:is|are|was|were)\s+no\s+(?!longer\b|more\b|less\b|worse\b|better\b"
      r"|\w+er\s+than\b)", "is not a …, does not have …", ""),
     ("has not", r"\b(?:has|have|had)\s+not(?=\s*(?:[.,;:)]|$)|\s+(?:the|an?|and|or|but)\b)", "does not have", ""),

@@ -196,6 +196,7 @@ class Words(unittest.TestCase):
 
     def test_accepted(self):
         for text in ("one file per channel", "a file in a folder", "a scene names a file", "There is no gap.",
+                     "empty where there is none", "when it took a channel out",
                      "It is no longer used.", "It has not changed.", "letters stand for axes", "`told` and 0.24 deg/√h",
                      "```sh\nallan --taus 1e-3\n```", "| 1e-12 | 0.004021 |", "one second a minute later"):
             self.assertEqual(self.found(text), [], text)
