@@ -23,8 +23,8 @@ COUNTED = (r"(?:algorithm|axis|bin|block|byte|cell|channel|class|column|core|cur
            r"|module|number|octave|page|pair|part|point|record|recording|row|run|sample|scene|second|section|sensor"
            r"|step|target|task|term|test|topic|unit|value|verb|word)")
 # Words that make "a … a" a phrase of another kind.
-BETWEEN = (r"(?!(?:a|an|and|as|at|before|behind|but|by|does|for|from|had|has|have|in|inside|into|is|of|on|once|or|over"
-           r"|per|took|share|than|that|to|twice|under|was|when|where|which|with|within|without)\b)[\w/-]+")
+BETWEEN = (r"(?!(?:a|about|an|and|as|at|before|behind|but|by|does|for|from|had|has|have|in|inside|into|is|of|on|once|or"
+           r"|over|per|took|share|than|that|to|twice|under|was|when|where|which|with|within|without)\b)[\w/-]+")
 EACH = rf"an?\s+{COUNTED}\b(?!-|\s+(?:or|later|after|apart|before)\b)"
 UNITS = r"(?:ns|µs|ms|s|B|bytes|KiB|MiB|MB|GB|%)"
 # Rule, what is refused, what to write instead, and where it does not apply: "table" or "".
