@@ -15,7 +15,7 @@ namespace libchar {
 enum class Rating {
   good,     ///< nothing speaks against them
   caution,  ///< they hold, but something was found that asks for a look
-  bad,      ///< there are none, or they are not to be relied on
+  bad,      ///< there are none, or they are unreliable
 };
 template <>
 inline constexpr auto enum_table<Rating> = enum_words<Rating, "good caution bad">;
