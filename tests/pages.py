@@ -4,7 +4,7 @@ pages.py ROOT
 - a file in `backticks` or in a link is in the repository (a bare name like `power_bins.cpp` anywhere in it);
   NAME, TARGET, FLOOR and other words in capitals stand for any name;
 - a page that a comment names (docs/….md) is in the repository;
-- in docs/architecture.md and docs/contributing.md every `function()` or `Type` in a row of a table that names
+- in docs/dev/architecture.md and docs/dev/contributing.md every `function()` or `Type` in a row of a table that names
   files stands in one of them.
 """
 import pathlib
@@ -59,12 +59,18 @@ def exists(name, page):
     return any(f.endswith("/" + clean) for f in files)
 
 
+def leads_to(link, page):
+    """As a browser follows it: from the folder of the page."""
+    target = (root / page).parent / link
+    return target.exists() and target.resolve().is_relative_to(root.resolve())
+
+
 def check_page(page):
     text = (root / page).read_text()
     text = re.sub(r"^```.*?^```", lambda m: "\n" * m[0].count("\n"), text, flags=re.S | re.M)
     for number, line in enumerate(text.split("\n"), 1):
         for link in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", line):
-            if "://" not in link and not exists(link, page):
+            if "://" not in link and not leads_to(link, page):
                 wrong.append(f"{page}:{number}: link to {link}: no such file")
         for word in re.findall(r"`([^`]+)`", line):
             path = re.fullmatch(rf"(?:{FOLDERS})/[\w./{{}},*-]*", word) or re.fullmatch(SOURCE, word)
@@ -101,7 +107,7 @@ def check_comments(source):
 
 for page in sorted(f for f in files if f.endswith(".md")):
     check_page(page)
-for page in ("docs/architecture.md", "docs/contributing.md"):
+for page in ("docs/dev/architecture.md", "docs/dev/contributing.md"):
     check_rows(page)
 for source in sorted(f for f in files if f.endswith((".cpp", ".hpp", ".py", ".txt", ".cmake"))
                      and f.startswith(("libchar/", "tools/", "tests/"))):

@@ -147,10 +147,10 @@ def read_ceilings(path):
     return rows
 
 
-def faults_of(counts, ceilings):
-    beyond = {key: count for key, count in counts.items() if count.number > LIMITS[key[0]][0]}
+def faults_of(counts, ceilings, limits=LIMITS):
+    beyond = {key: count for key, count in counts.items() if count.number > limits[key[0]][0]}
     for (gate, name), count in sorted(beyond.items()):
-        limit, what = LIMITS[gate]
+        limit, what = limits[gate]
         ceiling = ceilings.get((gate, name), (limit, ""))[0]
         if count.number > ceiling:
             places = ", ".join(count.places[:8] if gate != "names" else [])
@@ -158,7 +158,7 @@ def faults_of(counts, ceilings):
         elif count.number < ceiling:
             yield f"{gate}: {name}: {count.number} {what}, the ceiling is {ceiling}: lower it (--lower)"
     for (gate, name), (number, reason) in sorted(ceilings.items()):
-        if gate not in LIMITS:
+        if gate not in limits:
             yield f"{gate}: {name}: there is no such gate"
         elif (gate, name) not in beyond:
             yield f"{gate}: {name}: the row is not needed: drop it (--lower)"
@@ -166,13 +166,13 @@ def faults_of(counts, ceilings):
             yield f"{gate}: {name}: the row has no reason"
 
 
-def lower(path, counts):
+def lower(path, counts, limits=LIMITS):
     kept = []
     for line in path.read_text().splitlines():
         if line and not line.startswith("#"):
             gate, key, number, reason = line.split("\t")
             there = counts[gate, key].number
-            if there <= LIMITS[gate][0]:
+            if there <= limits[gate][0]:
                 continue
             line = "\t".join((gate, key, str(min(int(number), there)), reason))
         kept.append(line)

@@ -111,7 +111,7 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
       "--frozen",
       "N",
       [&a](const std::string& text) { a.options.frozen = parse_count(text, 2); },
-      "runs of N equal values and longer are no measurements, but missing (default: they count)");
+      "treat runs of N or more equal values as missing (default: they count)");
   verb.add_bytes(
       "--memory",
       a.options.memory_bytes,

@@ -26,7 +26,7 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& analysis);
 void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// --sides, --scaling, --segment, --overlap, --window, --detrend. `segment_s` is the length of a
 /// segment when a time was given for it, 0 otherwise.
-/// `quarter`: where N/4 of a log of any length is told from the default.
+/// `quarter`: to distinguish N/4 of a log of any length from the default.
 void add_spectrum_options(VerbOptions& verb,
                           libchar::WelchOptions& spectrum,
                           double& segment_s,
@@ -37,7 +37,7 @@ bool read_segment(const std::string& text, libchar::WelchOptions& spectrum, doub
 /// --terms, --threshold, --no-remedies, --assume, --temperature, --no-second-opinion
 void add_fit_options(VerbOptions& verb, AnalysisOptions& analysis);
 
-/// All of the above, and how a log is read: what a characterization can be told. `session` and
+/// All of the above, and reading options: all options of a characterization. `session` and
 /// `analysis` must live until the verb has run.
 void add_characterize_options(VerbOptions& verb, Session& session, AnalysisOptions& analysis);
 

@@ -93,7 +93,7 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
     throw libchar::usage_error("E0204", app.get_name())
         .says("unknown option in front of the verb")
         .got(command[1])
-        .hint(libchar::did_you_mean(near, "options stand behind the verb"));
+        .hint(libchar::did_you_mean(near, "options follow the verb"));
   }
   if (std::find(verbs.begin(), verbs.end(), command[1]) != verbs.end()) return;
   struct stat status {};
@@ -414,7 +414,7 @@ Option VerbOptions::add_choices(const std::string& names,
       const std::string word = text.substr(from, comma - from);
       check_word(word, words);
       if (std::find(values.begin(), values.end(), word) != values.end())
-        throw libchar::usage_error("E0205").says("a word stands twice in the list").got(word);
+        throw libchar::usage_error("E0205").says("a word is repeated in the list").got(word);
       values.push_back(word);
       from = comma + 1;
     }

@@ -26,7 +26,7 @@ struct Example;
 struct ProgramUsage;
 struct VerbUsage;
 
-/// What is known of an option beside what the parser knows.
+/// Properties of an option that the parser does not know.
 struct OptionNote {
   std::vector<std::string> words;  ///< the values that are known beforehand
   std::string only;                ///< where it has an effect ("with --curve"), "" everywhere
@@ -42,7 +42,7 @@ class Option {
  public:
   Option(CLI::Option* option, OptionNotes* notes) : option_(option), notes_(notes) {}
   Option& required();
-  /// The heading in the help under which it stands.
+  /// Its heading in the help.
   Option& group(const std::string& heading);
   /// What stands for its value in the help ("FILE").
   Option& value_name(const std::string& name);
@@ -70,7 +70,7 @@ class Option {
 
 /// The options of one verb. Names are "FILE" (an argument by its place), "--force", or "-o,--output".
 /// Variables must live until the verb has run, and keep their value where an option is not given;
-/// defaults must stand in `help`. What an option refuses is Error(usage) that names the option. A
+/// defaults must be stated in `help`. What an option refuses is Error(usage) that names the option. A
 /// value that is called LOG, FILE, MODEL, SCENE, CURVE, RUN, DIR or FOLDER is completed as a file
 /// or folder.
 class VerbOptions {
@@ -159,7 +159,7 @@ std::vector<std::string> with_joined_verb(const std::vector<std::string>& comman
 
 /// A word of a command as its verb understands it.
 struct ParsedWord {
-  std::string flag;   ///< "--output"; "" where it stands by its place
+  std::string flag;   ///< "--output"; "" for a positional argument
   std::string value;  ///< one of several; "" of a flag
   std::string file;   ///< the file or folder that it names, "" where it names none
   bool writes = false;

@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     libchar::keep_to_threads_given();
     CommandLine line(
         "sensorchar",
-        "What sensors do to what they measure: noise, models and fusion from recordings.",
+        "Measure sensor noise, export noise models and compare sensor fusion, from recordings.",
         fmt::format("sensorchar {} ({})", libchar::version(), libchar::build()),
         "Begin with: sensorchar inspect LOG");
     std::vector<std::string> names;

@@ -98,7 +98,7 @@ void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
   verb.add_choice("--date-order",
                   options.date_order,
                   {"auto", "day", "month"},
-                  "what stands first in 05/01/2024 (default: auto)")
+                  "first number in 05/01/2024 (default: auto)")
       .group(csv);
 }
 
@@ -131,13 +131,12 @@ void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
   verb.add_choice("--header",
                   options.header,
                   {"auto", "yes", "no"},
-                  "is the first row a header? (default: auto)")
+                  "whether the first row is a header (default: auto)")
       .group(csv);
-  verb.add_choice(
-          "--encoding",
-          options.encoding,
-          {"auto", "utf-8", "latin1", "cp1252"},
-          "encoding of the header (default: auto, UTF-8 or, where it is none, Windows-1252)")
+  verb.add_choice("--encoding",
+                  options.encoding,
+                  {"auto", "utf-8", "latin1", "cp1252"},
+                  "encoding of the header (default: auto, UTF-8, else Windows-1252)")
       .group(csv);
   add_long_format_options(verb, options);
   verb.add_count("--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)")

@@ -202,9 +202,8 @@ void add_data_options(VerbOptions& options, Session& session, ReplaySource& sour
       .value_name("NAME")
       .group(group);
   options
-      .add_text("--reference-log",
-                source.reference_log,
-                "log in which the reference stands (default: the recording)")
+      .add_text(
+          "--reference-log", source.reference_log, "log of the reference (default: the recording)")
       .value_name("FILE")
       .group(group);
   options.add_texts("--model", source.models, "noise model of a sensor, SENSOR=FILE.sensor.yaml")

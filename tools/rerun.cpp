@@ -70,7 +70,7 @@ void refuse_reading(const RerunOptions& options, const std::vector<ParsedWord>& 
   }
   if (outside.empty() || options.allow_read) return;
   throw usage_error("E0523", options.document)
-      .says("its command reads elsewhere than here and beside the document: {}",
+      .says("its command reads files outside this folder and the document's: {}",
             fmt::join(outside, ", "))
       .hint("--allow-read where you trust it");
 }

@@ -27,7 +27,7 @@ struct RerunOptions {
   std::string document;     ///< that characterize or replay wrote
   std::string folder;       ///< of the second run
   std::string inputs_in;    ///< where its inputs are looked for ("": from here)
-  bool allow_read = false;  ///< its command may read from elsewhere than there and beside it
+  bool allow_read = false;  ///< its command may read from other places than there and next to it
 };
 
 /// Runs with the words of the document's command as its verb understands them, but into `folder`; nothing else

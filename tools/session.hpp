@@ -41,7 +41,7 @@ libchar::Json document_head(const Session& session,
                             const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs);
 
-/// What is said beside results that stand in files; nothing when quiet.
+/// Texts in addition to results in files; nothing when quiet.
 void print_beside(const Session& session, const std::string& text);
 
 /// What memory that is refused is answered with: what this verb can do about it.
@@ -72,7 +72,7 @@ void refuse_standard_output(const char* flag,
 /// note; nothing when quiet.
 void print_summary(Session& session, const std::string& output, const std::string& text);
 
-/// A file that cannot be written is refused before the work is done: it is an input, stands
+/// A file that cannot be written is refused before the work is done: it is an input, exists
 /// already, or its folder cannot be written. An empty path is stdout.
 void foresee_output(const std::string& path, const std::vector<std::string>& inputs, bool force);
 

@@ -54,7 +54,7 @@ void print_text(const std::string& text);
 /// libchar::printable already.
 void say(std::string_view line);
 
-/// Progress on stderr: only on a terminal, after one second of work, at most ten times a second.
+/// Progress on stderr: only on a terminal, after one second of work, at most ten times per second.
 class Terminal : public libchar::Progress {
  public:
   Terminal();
@@ -67,7 +67,7 @@ class Terminal : public libchar::Progress {
   bool quiet() const { return quiet_; }
   /// Draws when it is time to. Throws Cancelled when a signal asked to stop.
   void update(double fraction, std::string_view what) override;
-  /// Removes the progress line, so that other text can stand there.
+  /// Removes the progress line, to make room for other text.
   void clear();
   /// Says every warning on one line each, with flags in place of the library's options (nothing when quiet).
   void warn(const libchar::Findings& warnings, std::string_view file);

@@ -1,7 +1,7 @@
 #pragma once
 // A verb is one file tools/verbs/NAME.cpp that defines
 //     VerbEntry verb_NAME();
-// with `-` in NAME written `_`. Nothing else has to be told: the table of all verbs is made from the
+// with `-` in NAME written `_`. Nothing else is needed: the table of all verbs is made from the
 // names of the files (tools/CMakeLists.txt).
 
 #include <functional>
@@ -19,12 +19,12 @@ struct Example {
 };
 
 struct VerbEntry {
-  int place;  ///< verbs stand in this order in the help
+  int place;  ///< order of the verbs in the help
   std::string name;
   std::string what;  ///< the line in the help
   /// Adds the verb's options, and returns what runs when it is chosen.
   std::function<std::function<void()>(VerbOptions&, Session&)> add_options;
-  std::vector<Example> examples = {};  ///< at least two: they stand in the help and in the man page
+  std::vector<Example> examples = {};  ///< at least two, for the help and the man page
 };
 
 /// All verbs, in the order of the help.

@@ -23,7 +23,7 @@ struct PresentTerms {
   void operator+=(const PresentTerms& other);
 };
 
-/// Values of one level at an end of a part, of which each says how many samples it lacks.
+/// Values of one level at an end of a part, each with the number of samples it lacks.
 struct LevelEnd {
   static constexpr std::size_t kMost = 7;  ///< that a term across a boundary can reach
   std::array<double, kMost> value{}, absent{};

@@ -53,7 +53,7 @@ struct DeviationRow {
   bool reflected;    ///< terms at every inner point of the record continued by reflection
   DeviationFamily family = DeviationFamily::differences;
 
-  /// Rate samples that one term spans at averaging factor m (at the smallest that there is, where m is below).
+  /// Rate samples that one term spans at averaging factor m (at the smallest possible factor, if m is below it).
   std::uint64_t span(std::uint64_t m) const;
   /// Its square is the Allan variance, whose curves and covariance are known exactly.
   bool is_allan() const {

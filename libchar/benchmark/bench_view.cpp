@@ -54,7 +54,7 @@ std::string coverage_cell(const EstimatorAccuracy& method) {
 }
 
 BenchChart chart_of(const CharacterizationBench& bench) {
-  BenchChart chart{"processor time, ns a sample", "RMSE over the bound, geometric mean", {}};
+  BenchChart chart{"processor time, ns per sample", "RMSE over the bound, geometric mean", {}};
   for (const EstimatorAccuracy& method : bench.methods)
     chart.points.push_back({method.name,
                             method.ns_per_sample.value,
@@ -86,7 +86,7 @@ BenchSection section_of(const CharacterizationBench& bench) {
   for (const TermAccuracy& term : bench.methods.front().terms)
     out.table.columns.push_back(
         {fmt::format("RMSE / bound, {}", kTermNames[static_cast<std::size_t>(term.term)].letter)});
-  Table rest("Coverage of 95 %|False terms|ns a sample|Time over the first|B a sample|Front");
+  Table rest("Coverage of 95 %|False terms|ns per sample|Time over the first|B per sample|Front");
   for (Table::Column& column : rest.columns) out.table.columns.push_back(std::move(column));
   std::vector<const EstimatorAccuracy*> order;
   for (const EstimatorAccuracy& method : bench.methods) order.push_back(&method);
@@ -168,9 +168,9 @@ BenchSection over_all(const FusionBench& bench) {
   }
   for (const FusionBenchLeftOut& scene : bench.left_out)
     out.sentences.push_back(fmt::format("Left out: {}; {}.", scene.name, scene.why));
-  for (const char* head : {"ns an instant", "B at most", "Front"})
+  for (const char* head : {"ns per instant", "B at most", "Front"})
     out.table.columns.push_back({head});
-  BenchChart chart{"processor time, ns an instant", "RMSE over the yardstick's", {}};
+  BenchChart chart{"processor time, ns per instant", "RMSE over the yardstick's", {}};
   for (const FusionBenchRow& row : bench.rows) {
     const bool anywhere = std::any_of(
         row.cells.begin(), row.cells.end(), [](const FusionBenchCell& cell) { return cell.ran; });

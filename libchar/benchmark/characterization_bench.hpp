@@ -49,13 +49,13 @@ struct EstimatorAccuracy {
   std::vector<TermAccuracy> terms;
   /// geometric mean of RMSE over bound, of the terms that a record can tell: whose bound is below half of them
   double error = 0;
-  /// records in which it states a coefficient that is not in them; no count: it was told what is, or all are
+  /// records in which it states a coefficient that is not in them; no count: it was given the terms, or all exist
   Figure false_terms;
   Figure ns_per_sample;
   Figure
       time_ratio;  ///< over the first method's on the same record: what load falls on alike is not in it
-  std::optional<double> bytes_per_sample;  ///< of heap beside the record
-  /// detail/pareto.hpp; those that are told do not count against those that are not
+  std::optional<double> bytes_per_sample;  ///< of heap apart from the record
+  /// detail/pareto.hpp; methods given the terms do not count against the others
   double front_gap = 0;
 };
 

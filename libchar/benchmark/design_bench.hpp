@@ -36,7 +36,7 @@ struct RecordNeeded {
   Term term = Term::white;
   std::optional<double> seconds;  ///< none: no record is long enough
   double samples = 0;
-  Figure simulated;  ///< relative RMSE of the likelihood, terms told; no count: not checked
+  Figure simulated;  ///< relative RMSE of the likelihood, terms given; no count: not checked
 };
 
 struct DesignBench {

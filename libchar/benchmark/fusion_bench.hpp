@@ -39,7 +39,7 @@ struct FusionBenchRow {
   std::string label, name;
   bool swept = false;                  ///< one of the options that `sweeps` asked for
   bool bound = false;                  ///< it looked at the reference of the run itself: no method
-  std::vector<FusionBenchCell> cells;  ///< one a scene
+  std::vector<FusionBenchCell> cells;  ///< one per scene
   /// geometric mean over the scenes that are pooled of RMSE over yardstick, minus one; no count: it did not run in each
   Figure excess;
   Figure ns_per_sample;  ///< geometric mean over the same

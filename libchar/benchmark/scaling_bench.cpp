@@ -175,7 +175,7 @@ Samples samples_of(const fusion::Array& array, std::uint64_t seed) {
   return out;
 }
 
-/// ns an instant of a runner that has learnt.
+/// ns per instant of a runner that has learnt.
 std::function<double()> instants_of(const fusion::Entry& entry,
                                     const fusion::Array& array,
                                     std::uint64_t seed) {
@@ -202,7 +202,7 @@ void add_sensors(const ScalingBenchOptions& options, Plan& plan) {
   for (const fusion::Entry& entry : fusion::algorithms()) {
     if (is_bound(entry) || entry.description->needs.tilt) continue;
     const std::size_t series =
-        plan.series(std::string(entry.description->name), "sensors", "ns an instant");
+        plan.series(std::string(entry.description->name), "sensors", "ns per instant");
     for (const Eigen::Index n : sizes)
       if (const fusion::Array array = fed_array(n, 1); why_not(*entry.description, array).empty())
         plan.task(series, static_cast<double>(n), instants_of(entry, array, options.seed));
@@ -213,7 +213,7 @@ void add_inputs(const ScalingBenchOptions& options, Plan& plan) {
   for (const fusion::Entry& entry : fusion::algorithms()) {
     if (is_bound(entry) || !why_not(*entry.description, fed_array(16, 4)).empty()) continue;
     const std::size_t series = plan.series(
-        std::string(entry.description->name) + ", 16 sensors", "inputs", "ns an instant");
+        std::string(entry.description->name) + ", 16 sensors", "inputs", "ns per instant");
     for (const Eigen::Index r : {1, 2, 4})
       plan.task(series, static_cast<double>(r), instants_of(entry, fed_array(16, r), options.seed));
   }

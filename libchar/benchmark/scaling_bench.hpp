@@ -29,7 +29,7 @@ struct ScalingPoint {
 struct ScalingSeries {
   std::string name;
   std::string over;  ///< "samples", "sensors", "inputs", "threads"
-  std::string unit;  ///< "ms", "ns an instant"
+  std::string unit;  ///< "ms", "ns per instant"
   std::vector<ScalingPoint> points;
   /// p of cost ~ x^p over the last three octaves; no count: too few points
   Figure exponent;

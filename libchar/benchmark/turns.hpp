@@ -17,7 +17,7 @@ std::vector<std::size_t> order_of_round(std::size_t count, std::size_t round);
 /// Seconds of processor time of this thread.
 double thread_seconds();
 
-/// What the machine is and what it did beside this program.
+/// The machine, and its load by other programs.
 struct Machine {
   std::string processor;  ///< as the system names it
   std::uint64_t cores = 0;

@@ -65,7 +65,7 @@ struct CharacterizeOptions {
   /// their noise is fitted
   std::string temperature;
   AllanOptions allan;
-  std::vector<DeviationType> more_types;  ///< besides `allan.type`, of the same samples
+  std::vector<DeviationType> more_types;  ///< in addition to `allan.type`, of the same samples
   WelchOptions spectrum;
   /// length of a segment where spectrum.segment is 0; 0 = a quarter of a record of at most a leaf
   /// (2^20 samples), 2^16 samples of a longer one

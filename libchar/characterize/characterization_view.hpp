@@ -17,7 +17,7 @@ namespace libchar {
 
 /// What the fit predicts for a measured curve.
 struct ModelCurve {
-  std::vector<std::optional<double>> values;  ///< one a point of the curve; none: not known there
+  std::vector<std::optional<double>> values;  ///< one per point of the curve; none: unknown there
   std::vector<std::optional<Interval>>
       intervals;                      ///< of the Allan curve, as many; empty: not stated (spectra)
   std::vector<Asymptote> asymptotes;  ///< of its terms
@@ -62,13 +62,13 @@ struct ChannelView {
   std::optional<double> noise_density_one_sided;          ///< √2·N, as data sheets say it
   std::vector<ReadOff> read_off;                          ///< points of the Allan curve
   std::optional<ModelCurve> allan_model, spectrum_model;  ///< none: no fit
-  std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one a bin; none: no dof
+  std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one per bin; none: no dof
   std::vector<std::optional<Interval>> verification_ci95;  ///< of the simulation's spectrum
   std::vector<OtherOpinion> other_opinions;
   std::vector<ConsumerNumber> consumers;  ///< which number goes where
-  /// of the Allan curve, one a point: a sensor that stands at the limits of its data sheet; empty: no limits for this channel
+  /// of the Allan curve, one per point: a sensor at the limits of its data sheet; empty: no limits for this channel
   std::vector<std::optional<double>> data_sheet;
-  bool draws_allan = false, draws_spectrum = false;  ///< something stands on logarithmic axes
+  bool draws_allan = false, draws_spectrum = false;  ///< something can be drawn on logarithmic axes
   bool in_detail = true;                             ///< has curves and a part of its own on a page
 };
 

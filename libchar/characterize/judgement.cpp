@@ -206,6 +206,7 @@ Judgement judge(const ChannelResult& channel) {
 }
 
 std::string goodness_sentence(const Goodness& g) {
+  constexpr double kDoubtful = 1e-3;  // of residuals so large once in a thousand recordings
   if (!(g.dof > 0)) return "The fit has no degrees of freedom left to be checked with.";
   const std::string figures = fmt::format("χ² = {} for {} degrees of freedom, {}",
                                           brief_text(g.chi2, 4),

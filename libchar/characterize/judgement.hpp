@@ -15,7 +15,7 @@ namespace libchar {
 enum class Rating {
   good,     ///< nothing speaks against them
   caution,  ///< they hold, but something was found that asks for a look
-  bad,      ///< there are none, or they are not to be relied on
+  bad,      ///< there are none, or they are unreliable
 };
 template <>
 inline constexpr auto enum_table<Rating> = enum_words<Rating, "good caution bad">;
@@ -34,9 +34,6 @@ Judgement judge(const ChannelResult& channel);
 
 /// What is known of a channel and of what was computed of it, the worst first: for whoever prints a part.
 std::vector<Finding> findings_of(const ChannelResult& channel);
-
-/// Below this the residuals are not what the model leads one to expect in one record of a thousand.
-inline constexpr double kDoubtful = 1e-3;
 
 /// How well the model explains the channel, by the p-value of the fit.
 std::string goodness_sentence(const Goodness& goodness);

@@ -1,7 +1,7 @@
 #pragma once
 // A characterization held against the limits of a data sheet: pass, fail, or not decided.
 //
-// By the 95 % interval of a coefficient: a term that stands exactly at its limit passes, or fails, by chance in at most 2.5 % of
+// By the 95 % interval of a coefficient: a term exactly at its limit passes, or fails, by chance in at most 2.5 % of
 // recordings (5 % where only an upper limit is known).
 
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 // One long log characterized by many machines, and merged exactly (docs/theory/stretches.md).
 //
-// A log is divided in leaves of 2^20 samples, the last of which may be short; a stretch is a range
+// A log is divided in leaves of 2^20 samples (the last may be short); a stretch is a range
 // of whole leaves. Leaves are taken one by one and joined in a tree that depends on their numbers
 // only, so that the result has the same bits however the log was divided in stretches, and in
 // whatever order their states arrive.

@@ -15,7 +15,7 @@ std::string verdict_of(const Characterization& result);
 /// What a fit found, in sentences with numbers in `unit`.
 std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit);
 
-/// What a fit found beside its noise terms: temperature, a filter. The last of `findings`.
+/// Findings of a fit other than its noise terms: temperature, a filter. The last of `findings`.
 std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit);
 
 }  // namespace libchar

@@ -49,11 +49,11 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "bash-completion, python3-libchar, libchar-dev")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
     "noise, models and fusion of sensors from recordings
-Tells how good a recorded sensor is: Allan deviation, power spectral density
-and fitted noise coefficients with honest intervals, in a report that can be
-shown to a colleague. It simulates sensors from what it found, hands the
-numbers to the tools that consume them, and replays recordings of sensor
-arrays through many fusion algorithms to say which one to use.")
+Measures the noise of a recorded sensor: Allan deviation, power spectral
+density and noise coefficients with confidence intervals, as an HTML report.
+It simulates sensors from the result, exports their numbers to Kalibr, Gazebo,
+PX4, GTSAM and other programs, and compares many fusion algorithms on
+recordings of sensor arrays.")
 
 # The archives link what readers of some formats use as well (libchar_optional): each library is in the package that installed it.
 get_cmake_property(variables CACHE_VARIABLES)

@@ -1,6 +1,6 @@
 #pragma once
-// What is known about a recording, a channel, a sensor or a noise term beside its numbers. A finding is made where it
-// is discovered and is carried as data by every later document: reports, models, exports, device records. Its parts
+// What is known about a recording, a channel, a sensor or a noise term apart from its numbers. A finding is made at
+// its discovery and carried as data by every later document: reports, models, exports, device records. Its parts
 // follow the diagnostics of compilers (a code, places, a help that can be applied) and SARIF 2.1.0 (OASIS).
 
 #include <cstdint>
@@ -71,8 +71,7 @@ struct Finding {
   };
   std::string code;  ///< stable key of its kind (finding_kinds), snake_case: "duplicate_timestamp"
   Severity severity = Severity::caution;
-  std::string
-      subject;  ///< channel or sensor; "": the recording, or the channel that it stands with
+  std::string subject;   ///< channel or sensor; "": the recording, or the channel that has it
   std::string sentence;  ///< what was found and what was done about it, without the count
   std::string phrase;    ///< the same as a part of a sentence: "spikes were left out"
   std::uint64_t count = 1;

@@ -13,7 +13,7 @@ inline constexpr std::size_t kTerms = 5;
 struct TermName {
   /// in files: "white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp"
   std::string_view key;
-  std::string_view letter;  ///< in texts, beside the long name; of IEEE 952
+  std::string_view letter;  ///< in texts, with the long name; of IEEE 952
 };
 inline constexpr std::array<TermName, kTerms> kTermNames = {{{"white_noise", "N"},
                                                              {"bias_instability", "B"},

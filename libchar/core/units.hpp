@@ -84,7 +84,7 @@ struct CountUnit {
 };
 std::optional<CountUnit> count_unit(std::string_view text);
 
-/// "1/16.4" or "0.05"; nothing when it is no number, or zero.
+/// "1/16.4" or "0.05"; nothing when it is not a number, or zero.
 std::optional<double> parse_factor(std::string_view text);
 
 /// Is it the unit of numbers without one ("1", "-", "none"), which is not printed?

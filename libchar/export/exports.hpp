@@ -60,7 +60,7 @@ std::string needs_text(ExportNeeds needs);
 struct ExportTakes {
   bool inflate = true;        ///< `ExportOptions::inflate`; false: numbers are written as they are
   bool low_pass = false;      ///< the file can say that a sensor has one
-  bool magnetometer = false;  ///< beside the gyroscope and the accelerometer
+  bool magnetometer = false;  ///< in addition to the gyroscope and the accelerometer
   bool gauss_markov = false;  ///< `correlation_s`, `floor_tau_s`
   bool bias_tau = false;      ///< `bias_tau_s`
   bool filter_step = false;   ///< `filter_step_s`

@@ -15,7 +15,7 @@ inline constexpr std::size_t kSeriesInks = 7;
 
 enum class FigureMarker { none, circle, square, triangle, diamond, down, cross };
 
-/// Told apart by dash and marker as well as by colour, for print in grey.
+/// Distinguished by dash and marker as well as by colour, for print in grey.
 struct FigureLook {
   Ink ink = Ink::blue;
   std::size_t dash = 0;  ///< number of a pattern; 0: a whole line
@@ -31,11 +31,11 @@ struct FigureSeries {
   std::string band;               ///< of the band in the legend; empty: not there
   FigureLook look;
   std::vector<bool> hollow;  ///< markers that are drawn so, as many; empty: none
-  bool behind = false;       ///< drawn before the others, wherever it stands in the legend
+  bool behind = false;       ///< drawn before the others, in any place of the legend
   std::string tip = {};      ///< where the pointer rests, on a page
 };
 
-/// A point with a word beside it.
+/// A point with a word next to it.
 struct FigureMark {
   double x = 0, y = 0;
   std::string text;
@@ -44,7 +44,7 @@ struct FigureMark {
   std::string tip = {};  ///< where the pointer rests, on a page
 };
 
-/// A line from one point to another, such as an interval beside a mark.
+/// A line from one point to another, such as an interval next to a mark.
 struct FigureWhisker {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   Ink ink = Ink::black;
@@ -62,7 +62,7 @@ struct FigureBar {
   std::size_t row = 0;
   double from = 0, to = 0;
   std::string name;  ///< in the legend; the same for bars of one look
-  std::string note;  ///< beside it, where there is room
+  std::string note;  ///< next to it, if there is room
   Ink ink = Ink::grey;
   bool broad = false, hollow = false;
 };

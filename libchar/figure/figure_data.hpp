@@ -8,7 +8,7 @@
 
 namespace libchar {
 
-/// part,name,x,y,low,high,text: a row a point. Parts: series, mark, interval (of a mark: from x,y
+/// part,name,x,y,low,high,text: one row per point. Parts: series, mark, interval (of a mark: from x,y
 /// to low,high), stretch, bar (its row in y).
 std::string figure_csv(const Chart& figure);
 

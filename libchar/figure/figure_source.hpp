@@ -70,7 +70,7 @@ struct FigureSource {
   std::vector<SourceResiduals> residuals;
   std::vector<SourceTrace> traces;
   std::vector<Finding> findings;  ///< of the channels (subject), the worst first; no notes
-  std::shared_ptr<const ReplayReport> replay;  ///< the report of a replay; null: it is none
+  std::shared_ptr<const ReplayReport> replay;  ///< the report of a replay; null: another document
 };
 
 /// Reads report.json of characterize or replay (or the folder that holds it), what `allan`, `psd`

@@ -23,7 +23,7 @@ struct FigureOptions {
       channels;  ///< names or patterns: channels, of a replay sensors or algorithms; empty: all
   std::string algorithm;  ///< whose weights, variances and findings; empty: the best that has them
   std::string input;      ///< of a replay with several: whose figure; empty: the first
-  std::vector<std::string> labels;  ///< one a file, in place of the names made of theirs
+  std::vector<std::string> labels;  ///< one per file, in place of names made of theirs
   std::string title;
   std::optional<Interval> x_range, y_range;  ///< in the units of the axes
 };

@@ -34,7 +34,7 @@ struct FitOptions {
   std::string unit;         ///< of the samples, in sentences
   double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
   double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this
-  bool second_opinion = true;   ///< covariance-weighted Allan fit beside the first
+  bool second_opinion = true;   ///< covariance-weighted Allan fit next to the first
   int threads = 1;
 };
 

@@ -88,7 +88,7 @@ struct NoiseFit {
   std::vector<FitResidual> residuals;
   std::vector<PowerBin>
       bins;  ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
-  std::vector<Finding> findings;  ///< what the fit found beside the coefficients
+  std::vector<Finding> findings;  ///< of the fit, apart from the coefficients
   std::string method;             ///< "DCT-II Whittle likelihood, 128 bins" …
   bool converged = true;
   int iterations = 0;

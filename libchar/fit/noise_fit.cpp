@@ -264,10 +264,10 @@ void answer_hump(const std::vector<PowerBin>& bins,
   }
   Finding hump = finding(
       "hump",
-      fmt::format("Below {} Hz the record holds what no noise term describes (a cycle, a movement, "
-                  "the temperature): N is from above, and of B and K there are limits alone.",
+      fmt::format("Below {} Hz no noise term describes the record (a cycle, a movement, the "
+                  "temperature): N is from above; B and K have limits only.",
                   brief_text(bottom_hz)),
-      "its slow part is no noise");
+      "its slow part is not noise");
   hump.where.frequency_hz.push_back({0, bottom_hz});
   fit.findings.push_back(std::move(hump));
 }

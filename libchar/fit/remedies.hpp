@@ -22,10 +22,10 @@ double spike_alarm(std::uint64_t samples);
 /// Kurtosis of the first differences of a record; NaN are skipped.
 double kurtosis_of_differences(std::span<const double> record);
 
-/// What is done about what stands out of a record: left out, or kept with a sentence that says why.
+/// Treatment of outliers of a record: left out, or kept with a sentence that says why.
 struct SpikeAnswer {
-  std::optional<Remedy> remedy;             ///< the spikes are to be left out
-  std::optional<Finding> kept;              ///< or why nothing is; none where nothing stands out
+  std::optional<Remedy> remedy;  ///< the spikes are to be left out
+  std::optional<Finding> kept;   ///< or the reason for keeping them; none without outliers
   std::optional<OutlierVariance> outliers;  ///< that are left in what is fitted
 };
 SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count);

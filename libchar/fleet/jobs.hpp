@@ -32,7 +32,7 @@ std::vector<FleetJob> jobs_of(const FleetPlan& plan,
                               const FleetStatus& status,
                               const JobOptions& options);
 
-/// What an engine is given, in DIR: jobs/NAME.txt with a task file a line, and its own files.
+/// What an engine is given, in DIR: jobs/NAME.txt with one task file per line, and its own files.
 struct Engine {
   std::string name, what;  ///< "slurm"
   std::string file;        ///< that its own command takes, in DIR

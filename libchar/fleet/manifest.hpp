@@ -38,7 +38,7 @@ Manifest parse_manifest(std::string_view text,
                         const CharacterizeOptions& options = {});
 
 /// Each log is a device of its own, called as its file is; by their folders too where two are
-/// alike. A word with * ? [ that is no file stands for the files that match. Throws Error(input)
+/// alike. A word with * ? [ that is not a file stands for the matching files. Throws Error(input)
 /// where none does, Error(usage) for a manifest among them.
 Manifest manifest_of_logs(const std::vector<std::string>& words,
                           const CharacterizeOptions& options = {});

@@ -31,7 +31,7 @@ std::vector<PlannedFleet> read_fleets(const std::vector<std::string>& folders);
 /// Throws Error(input), by name, where two of the fleets have one log with the same settings: it would count twice.
 void refuse_common_logs(const std::vector<PlannedFleet>& fleets);
 
-/// What is typed for the report of these fleets: beside a folder that is the working one, not in it.
+/// Default folder of the report of these fleets: next to the working folder, not in it.
 std::string merge_command(const std::vector<std::string>& folders);
 
 /// A record for each device of the plan. Throws Error(input) where results are missing or damaged,

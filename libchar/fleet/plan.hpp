@@ -22,15 +22,15 @@ namespace libchar {
 
 struct FleetPlanOptions {
   bool by_channel = false;  ///< a unit for each channel of a log
-  bool reports = true;      ///< each device's page and tables besides its record
+  bool reports = true;      ///< each device's page and tables as well as its record
   std::uint64_t split_bytes =
       std::uint64_t{4}
       << 30U;  ///< logs larger than this are divided in stretches where their format allows
   std::uint64_t stretch_bytes = std::uint64_t{1} << 30U;  ///< about, of a stretch
-  bool skip_unreadable = false;  ///< plan the others; those that cannot be read stand in the report
+  bool skip_unreadable = false;  ///< plan the others; the report lists the unreadable ones
 };
 
-/// A device of the plan: what the report says beside the result.
+/// A device of the plan: statements of the report in addition to the result.
 struct PlannedDevice {
   std::string device, type, batch, limits, log, sha256;
   std::optional<double> temperature_c;
@@ -59,7 +59,7 @@ struct ReplacedPlan {
   bool damaged = false;
 };
 
-/// None: there is no plan. Throws Error(input) for a plan.jsonl that is no plan of a fleet, which would be lost.
+/// None: there is no plan. Throws Error(input) for a plan.jsonl other than the plan of a fleet, which would be lost.
 std::optional<ReplacedPlan> plan_in(const std::filesystem::path& folder);
 
 /// Results in the folder that are of no unit of the plan.
@@ -70,7 +70,7 @@ std::size_t results_of_others(const FleetPlan& plan, const std::filesystem::path
 /// Throws Error(output).
 void write_plan(const FleetPlan& plan, const std::filesystem::path& folder);
 
-/// Throws Error(input) for what is no plan, or one of another version of the program.
+/// Throws Error(input) for anything but a plan, or a plan of another version of the program.
 FleetPlan read_plan(const std::filesystem::path& folder);
 
 /// A unit by the file of its task, DIR/tasks/N.json. Tasks are not flushed one by one: one that a

@@ -52,7 +52,7 @@ struct FleetUnit {
   std::string settings;  ///< settings_id of the whole log, where lists of its channels were divided
   StretchRange stretch;  ///< of a stretch
   std::vector<std::string> parts;  ///< of a join: the ids of its stretches
-  bool reports = true;  ///< report.html, report.json, curves.csv and models besides the record
+  bool reports = true;  ///< report.html, report.json, curves.csv and models as well as the record
   UnitCost cost;
 };
 

@@ -18,7 +18,7 @@
 //       those that count instants or follow time
 //   void finish_learning();
 //       after the last one; throws Error(numeric) when nothing can be learnt
-//   Eigen::MatrixXd weights() const;      n x r, as they stand now
+//   Eigen::MatrixXd weights() const;      n x r, at present
 //   Eigen::VectorXd variances() const;    of a sample's noise, channel by channel, as estimated now
 //   const FaultLog& faults() const;
 //   void remarks(Findings&) const;        what the reader of the result must know
@@ -53,7 +53,7 @@ inline constexpr int kMaxStates = 8;  ///< inputs r that an algorithm can estima
 
 /// Lives inside the object: `step` makes no trip to the heap.
 using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxStates, 1>;
-/// One instant, one value a channel, NaN = missing; or the true inputs of that instant.
+/// One instant, one value per channel, NaN = missing; or the true inputs of that instant.
 using Sample = Eigen::Map<const Eigen::VectorXd>;
 /// Of a vector of known length, for LearntExchange.
 inline std::span<double> span_of(Eigen::VectorXd& values) {

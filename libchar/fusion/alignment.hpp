@@ -1,5 +1,5 @@
 #pragma once
-// Before fusion: what makes sensors of one quantity differ that is no noise, and how to take it out.
+// Before fusion: differences between sensors of one quantity other than noise, and their removal.
 
 #include <cstdint>
 #include <limits>

@@ -1,5 +1,5 @@
 #pragma once
-// What makes sensors of one quantity differ that is no noise, learnt from a stretch of their samples.
+// Differences between sensors of one quantity other than noise, learned from a stretch of their samples.
 
 #include <Eigen/Core>
 #include <vector>

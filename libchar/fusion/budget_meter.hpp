@@ -33,7 +33,7 @@ class BudgetMeter {
   };
   struct Sums {                          // of one batch
     Eigen::MatrixXd regressors;          // Gram matrix of 1, x, c_k, dx
-    Eigen::MatrixXd errors;              // regressors' errors, a column a channel and the mean
+    Eigen::MatrixXd errors;              // regressors' errors, one column per channel and the mean
     Eigen::VectorXd squares, undelayed;  // of the errors
     Eigen::VectorXd rest, rest_slope;    // r^2, r^2 dx^2 of what is aligned
     double slope2 = 0, slope4 = 0, count = 0;

@@ -32,12 +32,12 @@ struct Needs {
 struct Description {
   std::string_view name;        ///< stable key: "inverse-variance"
   std::string_view title;       ///< one line
-  std::string_view source;      ///< where the equations stand
+  std::string_view source;      ///< of the equations
   std::string_view complexity;  ///< of a step
   Needs needs = {};
   /// of one learning instant; "" when nothing is learnt
   std::string_view learning_complexity = "";
-  bool as_published = false;  ///< in the source's own form, beside a more robust one
+  bool as_published = false;  ///< in the source's own form, next to a more robust one
 };
 
 }  // namespace libchar::fusion

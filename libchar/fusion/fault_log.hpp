@@ -17,7 +17,7 @@ enum class FaultRule {
   noise,            ///< its residual scatters more: it stays in use, with less weight
   dead,             ///< it says nothing about the input any more
   stuck,            ///< it repeats a value that it could not repeat
-  saturated,        ///< it stands at the end of its range
+  saturated,        ///< it is at the end of its range
 };
 constexpr std::string_view name(FaultRule rule) {
   constexpr std::string_view names[] = {
@@ -25,7 +25,7 @@ constexpr std::string_view name(FaultRule rule) {
   return names[static_cast<int>(rule)];
 }
 
-/// A stretch in which the faults could not be told: two sets of channels contradict each other and
+/// A stretch in which the faults could not be assigned: two sets of channels contradict each other and
 /// either may be the healthy one, or most channels are off at once.
 struct FaultDoubt {
   std::int64_t sample = 0;  ///< where it was seen

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers that change how an algorithm works: a table of rows beside the algorithm, values set by
+// Numbers that change how an algorithm works: a table of rows next to the algorithm, values set by
 // name.
 
 #include <span>

@@ -15,7 +15,7 @@ LogInfo read_log_head(const std::string& path, const ReadOptions& options);
 /// The channels that each of `words` stands for: a name, a position c0, c1…, or a pattern with * and ?.
 /// A word that is a name is that channel. A pattern stands for the channels that match, in natural order,
 /// less those that another word names, an earlier pattern took, or `except` holds. Throws Error(usage)
-/// for a word that stands for none (E0320), with the channels that there are.
+/// for a word without a channel (E0320), with the existing channels.
 std::vector<std::vector<std::string>> channel_names(const std::string& path,
                                                     const ReadOptions& options,
                                                     const std::vector<std::string>& words,

@@ -18,7 +18,7 @@ struct LogFormat {
   std::string_view otherwise;  ///< what else is taken for this format; "" = what looks like it
   /// Does a file hold them? "yes", "no", or where.
   std::string_view names = "yes", units = "yes", rate = "by stamps", start = "yes";
-  /// Written as this format unless told otherwise; none = never written.
+  /// Default for writing as this format; none = never written.
   std::vector<std::string_view> written_suffixes = {};
   bool writes_names = true;  ///< a file that is written says names and units of its channels
   bool writes_rate = false;  ///< … and its sampling rate

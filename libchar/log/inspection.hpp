@@ -13,16 +13,16 @@ namespace libchar {
 
 struct Inspection {
   LogInfo info;
-  std::vector<ChannelQuality> quality;  ///< one a channel
+  std::vector<ChannelQuality> quality;  ///< one per channel
 };
 
-/// Reads a log once, in constant memory. Of a log with several topics, none of which was chosen, it
+/// Reads a log once, in constant memory. Of a log with several topics, without a choice, it
 /// lists them (`is_listing`).
 Inspection inspect(const std::string& path,
                    const ReadOptions& options = {},
                    Progress& progress = no_progress());
 
-/// Are these the topics of a log, one of which has to be chosen before it is read?
+/// Are these topics of a log, to be chosen before it is read?
 bool is_listing(const LogInfo& info);
 
 /// "euroc.csv: 6 channels, 200.000 Hz (jitter 0.8 us), 7200 s, 0 gaps".

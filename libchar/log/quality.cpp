@@ -762,7 +762,8 @@ void judge_values(const ChannelQuality& q, std::vector<Finding>& out) {
                     brief_text(q.signs.period, 6),
                     q.signs.wraps));
     wraps.count = q.signs.wraps;
-    wraps.help.push_back({"Unwrap it, as the phase or the angle that it is.", {{"data", "phase"}, {"unwrap", shortest(q.signs.period)}}});
+    wraps.help.push_back({"Unwrap it, as the phase or the angle that it is.",
+                          {{"data", "phase"}, {"unwrap", shortest(q.signs.period)}}});
     out.push_back(std::move(wraps));
   }
   if (q.samples < 16) return;

@@ -14,15 +14,15 @@
 namespace libchar {
 
 struct ChannelQuality {
-  /// What the values look like that are no measurement.
+  /// Kinds of values other than measurements.
   struct Signs {
-    /// why the channel is a clock or a counter ("rises by 1 with every sample"); "" when it is none
+    /// why the channel is a clock or a counter ("rises by 1 with every sample"); "" otherwise
     std::string counter;
     /// jumps by the whole range: a phase or an angle that starts again at the other end
     std::uint64_t wraps = 0;
     double period = 0;          ///< of them, with as many digits as the jumps agree in
     std::vector<double> marks;  ///< extremes that look like marks for missing values
-    double resting_value = 0;   ///< that stood eight times in a row first
+    double resting_value = 0;   ///< the first that was repeated eight times
     std::uint64_t at_rest = 0;  ///< samples at it from there on; 0: no value did
   };
   std::uint64_t samples = 0;  ///< not missing
@@ -33,7 +33,7 @@ struct ChannelQuality {
   std::optional<double>
       resolution;  ///< least step between distinct values (LSB), when the values lie on a grid
   std::uint64_t distinct_values = 0;  ///< counted up to 4096, then 4096
-  /// samples at the minimum or maximum, where three stand in a row and the value next to it has
+  /// samples at the minimum or maximum, if three are consecutive and the value next to it has
   /// less than half as many
   std::uint64_t saturated = 0;
   std::uint64_t longest_stuck = 0;  ///< longest run of one value

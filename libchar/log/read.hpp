@@ -14,7 +14,7 @@
 namespace libchar {
 
 struct ReadOptions {
-  /// What is no measurement, though it is a number.
+  /// Numbers that are not measurements.
   struct Missing {
     std::vector<double> marks;  ///< values that stand for "no reading" in the log: -999, 65535
     bool overflow =
@@ -40,7 +40,7 @@ struct ReadOptions {
       where;  ///< "sensor=Gyroscope": only rows with this in that column (CSV); all of them must hold
   std::string group_by;  ///< a column whose values become channels of their own (CSV); "" = none
   std::string date_order =
-      "auto";                    ///< "auto", "day", "month": which stands first in 05/01/2024 (CSV)
+      "auto";                    ///< "auto", "day", "month": which comes first in 05/01/2024 (CSV)
   std::optional<double> from_s;  ///< first instant to use, seconds after the first stamp
   std::optional<double> to_s;    ///< first instant not to use
   std::optional<double>
@@ -87,13 +87,13 @@ LogInfo read_log(const std::string& path,
                  BlockSink& sink,
                  Progress& progress = no_progress());
 
-/// Channels first … end - 1 of those that were chosen.
+/// Chosen channels first … end - 1.
 struct ChannelRange {
   std::size_t first = 0, end = SIZE_MAX;
   bool has(std::size_t channel) const { return first <= channel && channel < end; }
 };
 
-/// Rows first … end-1 of a log without stamps whose rows stand at fixed places (.npy, raw binary),
+/// Rows first … end-1 of a log without stamps with rows at fixed places (.npy, raw binary),
 /// a sample each; nothing in front of them is read. Of channels out of the range the sink gets no
 /// samples of the log but any numbers; what has to be said of the log, and not of a channel, is
 /// said with the first. `from_s` and `to_s` do not count, no digest is taken, and whether a channel
@@ -108,10 +108,10 @@ LogInfo read_rows(const std::string& path,
 /// "" or why rows of a log cannot be read from anywhere: "its rows have no fixed places (csv)". `log`: its head.
 std::string why_no_rows(const LogInfo& log);
 
-/// The code of the Error for a log of several topics of which none was chosen.
+/// The code of the Error for a log of several topics without a choice.
 inline constexpr std::string_view kTopicNotChosen = "E0427";
 
-/// The rows of a log as they stand in it, each with its stamp: nothing is ordered and nothing put on a grid.
+/// The rows of a log in its order, each with its stamp: nothing is ordered and nothing put on a grid.
 struct StampedRows {
   LogInfo info;
   std::vector<std::vector<double>> samples;  ///< by channel

@@ -12,7 +12,7 @@ inline constexpr NumberRange kRates{1e-9, 1e12, false};
 /// How the samples of a file are to be read; threads, block size and hash change no result and have no key.
 const Fields<ReadOptions>& reading_fields();
 
-/// The keys of those that are not at their default.
+/// The keys with values other than their default.
 std::vector<std::string> options_given(const ReadOptions& options);
 
 }  // namespace libchar

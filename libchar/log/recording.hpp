@@ -40,7 +40,7 @@ struct LogTopic {
       why_not;  ///< why no field can be read ("images", "encoding protobuf"); "" when they can
 };
 
-/// The time axis: sample k of the grid stands at t0 + k / rate.
+/// The time axis: sample k of the grid is at t0 + k / rate.
 struct TimeBase {
   double rate_hz = 0;  ///< 0 when unknown (no stamps and no `rate_hz`)
   bool from_stamps =
@@ -49,7 +49,7 @@ struct TimeBase {
   std::string unit;    ///< "s", "ms", "us", "ns", "min", "h", "100000 ns"…, "" when there is none
   std::int64_t unit_ns = 0;   ///< the same in nanoseconds; 0 when there is none
   bool unit_guessed = false;  ///< the unit was inferred from the magnitude of the stamps, not read
-  bool local = false;         ///< dates without a zone: an hour may stand twice, or be left out
+  bool local = false;         ///< dates without a zone: an hour may be repeated or missing
   std::optional<std::int64_t>
       start_ns;                ///< stamp of the first sample in ns, when the log has stamps
   double jitter_s = 0;         ///< robust standard deviation (1.4826 MAD) of stamp minus grid

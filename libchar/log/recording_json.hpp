@@ -49,10 +49,10 @@ struct DescribedChannel {
 /// Name, unit and what the samples of a channel say about the instrument.
 const Fields<DescribedChannel>& described_channel_fields();
 
-/// File, channels, time base and repairs; `qualities` has one element a channel of `log`.
+/// File, channels, time base and repairs; `qualities` has one element per channel of `log`.
 Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
 
-/// What schemas say of a recording, and of what stands beside a raw binary log.
+/// Schemas of a recording, and of the sidecar of a raw binary log.
 std::span<const Field> recording_rows();
 std::span<const Field> sidecar_rows();
 

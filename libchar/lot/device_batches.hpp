@@ -11,7 +11,7 @@ namespace libchar {
 
 struct DeviceBatches {
   std::vector<std::size_t> device_of;  ///< of each record; devices are numbered as they come
-  /// Of each device: of those that its recordings state, the first in natural order.
+  /// Of each device: the first, in natural order, of the batches stated by its recordings.
   std::vector<std::string> batch;
   /// Devices with recordings in several, by name and where they count; empty: none.
   std::string note;

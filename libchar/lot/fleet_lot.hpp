@@ -25,9 +25,9 @@
 namespace libchar {
 
 struct FleetLotOptions {
-  /// Of each type of device; "": of those that are not named.
+  /// Of each type of device; "": of all types not named.
   std::map<std::string, NoiseLimits> limits;
-  /// Of naming any device of a fleet in which none stands out: each quantity of each channel gets its share.
+  /// Of naming any device of a fleet without outliers: each quantity of each channel gets its share.
   double outlier_probability = 0.01;
   std::size_t worst = 100;  ///< devices in the list of the worst
 };
@@ -153,11 +153,11 @@ struct QuantityLot {
   std::vector<std::size_t> charted;   ///< recording of each value of the chart
   std::optional<Capability> capability;
   // Of a channel among devices; of a kind where one device has all of its channels:
-  bool searched = false;               ///< there are enough to say who stands out
+  bool searched = false;               ///< there are enough to find outliers
   std::vector<FleetOutlier> outliers;  ///< worst first
 };
 
-/// A device that stands out or fails a limit.
+/// A device that is an outlier or fails a limit.
 struct WorstDevice {
   std::size_t recording = 0;  ///< its first
   double p = 1;               ///< the least of its reasons'
@@ -175,9 +175,9 @@ struct FleetLot {
   std::vector<std::size_t> batch_of;        ///< of each record, that of its device
   std::vector<QuantityLot> quantities;      ///< kinds first, channel by channel then
   std::vector<WorstDevice> worst;           ///< the worst first, at most as many as asked for
-  std::size_t outlying = 0;                 ///< devices that stand out
+  std::size_t outlying = 0;                 ///< devices that are outliers
   std::size_t failing = 0, open = 0, keeping = 0;  ///< devices, by all limits that hold for them
-  std::vector<bool> stands_out, fails;             ///< one a record, that of its device
+  std::vector<bool> stands_out, fails;             ///< one per record, that of its device
   std::vector<std::string> notes;                  ///< what was not compared, and why
   std::string verdict;                             ///< a paragraph
 };

@@ -29,7 +29,7 @@ struct Capability {
 /// Fills ppk, its interval and `above`. `limit` as what `effects` is of.
 void add_ppk(const RandomEffects& effects, double limit, Capability& out);
 
-/// Bins of one width; what lies far off stands in `below` and `above`, so that one wild value does not squeeze all others into a bin.
+/// Bins of one width; distant values are in `below` and `above`, so that one wild value does not squeeze all others into a bin.
 struct Histogram {
   double low = 0, step = 1;          ///< bin k reaches from low + k step to the next
   std::vector<std::uint64_t> count;  ///< empty: of no values

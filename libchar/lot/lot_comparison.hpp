@@ -38,7 +38,7 @@ struct FleetComparison {
   std::size_t devices_a = 0, devices_b = 0;
   std::size_t tests = 0;
   double false_alarm = 0.05;
-  std::vector<LotDifference> differences;  ///< as the groups stand, whatever came out
+  std::vector<LotDifference> differences;  ///< in the order of the groups, whatever the result
   std::vector<std::string> not_compared;   ///< what only one has, or too few of
   std::vector<std::string> notes;          ///< of units; the caller's on how the lots were made
   std::string verdict;

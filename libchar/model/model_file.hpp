@@ -25,7 +25,7 @@ SensorModel parse_sensor_model(std::string_view text, const std::string& file);
 SensorModel read_model_file(const std::string& path);
 
 /// The keys of a model inside another document (a scene): as a model file without format and
-/// version, which may stand there all the same.
+/// version, which are optional.
 SensorModel sensor_model_of(const Document& node, const std::string& file, const std::string& path);
 
 // Sensor models as JSON: one model with the keys of its YAML file, several as a list.

@@ -22,7 +22,7 @@ struct LimitBlock {
   std::vector<std::string> channels;  ///< by name; empty: by kind
   std::string kind;     ///< a word of Quantity, by the channel's unit; empty: every channel
   std::string density;  ///< "one-sided", "two-sided": of values per √Hz
-  Document node;        ///< the block as it stands in the file
+  Document node;        ///< the block as written in the file
 };
 
 struct NoiseLimits {

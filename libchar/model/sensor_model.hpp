@@ -72,7 +72,7 @@ struct Sensitivity {
   bool operator==(const Sensitivity&) const = default;
 };
 
-/// What stands between the noise and the samples (docs/theory/simulation.md).
+/// Filters between the noise and the samples (docs/theory/simulation.md).
 enum class NoiseSampling {
   per_sample,    ///< noise is made at the sampling rate and goes through the low-pass with the
                  ///< signal: what the fit assumes
@@ -85,7 +85,7 @@ enum class NoiseStart {
   zero,        ///< it starts at the first sample, as published [RV app. A]
 };
 
-/// What was no noise in the recording that the model is from: a mean with a sign, at an instant of
+/// Events other than noise in the recording of the model: a mean with a sign, at an instant of
 /// that recording. A simulation has it only when asked.
 struct DeterministicTerm {
   enum class Kind { step, warm_up, ramp };
@@ -114,7 +114,7 @@ struct SensorModel {
   Bias bias;
   double reference_temperature_degc = 25;
   Coefficients noise;  ///< status, value, 95 % interval of the five terms, two-sided densities
-  GaussMarkovNoise gauss_markov;  ///< in U, beside the terms; sigma 0: none
+  GaussMarkovNoise gauss_markov;  ///< in U, in addition to the terms; sigma 0: none
   double flicker_phase =
       0;  ///< of a clock's frequency: differences of flicker over the sampling interval, times this
   NoiseSampling noise_sampling = NoiseSampling::per_sample;

@@ -18,7 +18,7 @@ using ComparisonCheck = GrowthCheck;
 ComparisonCheck parse_comparison_check(std::string_view text);
 
 /// One sentence for each algorithm that fails the check. Fails too: an algorithm with a value in A
-/// and, though B names it, none there. Throws Error(usage) when `label` stands in neither report,
+/// and, though B names it, none there. Throws Error(usage) when `label` is in neither report,
 /// and Error(check) when no algorithm has a value in A to hold against: a check that cannot fail.
 std::vector<std::string> failures(const Comparison& comparison, const ComparisonCheck& check);
 

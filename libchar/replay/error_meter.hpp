@@ -43,8 +43,7 @@ struct ErrorScore {
   Interval rmse_ci95;
   double bias = 0;
   Interval bias_ci95;
-  double deviation =
-      0;  ///< standard deviation: what is left beside a constant offset of the reference
+  double deviation = 0;  ///< standard deviation: without a constant offset of the reference
   double maximum = 0;
   double availability = 0;  ///< share of instants with an estimate
   std::uint64_t samples = 0;

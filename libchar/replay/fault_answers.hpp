@@ -1,5 +1,5 @@
 #pragma once
-// What was found of the faults that a scene knows, and what was raised beside them.
+// Detections of the faults that a scene knows, and further alarms.
 
 #include <cstddef>
 #include <cstdint>

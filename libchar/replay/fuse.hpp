@@ -49,7 +49,7 @@ struct FuseResult {
   Findings warnings;  ///< of the fusion; those of the log are in `log`
 };
 
-/// Gives `sink` the inputs, their standard deviations, and a flag a sensor (1: in use, 0: taken out by the
+/// Gives `sink` the inputs, their standard deviations, and one flag per sensor (1: in use, 0: taken out by the
 /// algorithm, missing: no sample). Throws Error(input) when log and file do not fit, Error(usage) for an
 /// algorithm or sensor that the file does not have.
 FuseResult fuse(const std::string& log,

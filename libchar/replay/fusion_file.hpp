@@ -34,7 +34,7 @@ struct LearntSensor {
   double scale = 1;
   std::vector<double> h = {1};
   double offset = 0;                     ///< subtracted from the scaled samples
-  std::optional<double> noise_variance;  ///< of a sample, as algorithms were told
+  std::optional<double> noise_variance;  ///< of a sample, as given to algorithms
   std::optional<double> flicker, walk;   ///< of its noise model; both or none
   std::vector<double> gauss_markov_sigma, gauss_markov_tau_s;
   std::vector<std::string> cross;  ///< channels of the device's further axes

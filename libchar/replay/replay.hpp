@@ -18,7 +18,7 @@ struct ReplayOptions {
   std::vector<SceneAlgorithm> algorithms;          ///< win over the scene's list; `line` 0
   std::optional<TimeWindow> learning, evaluation;  ///< win over the scene's
   bool published =
-      false;  ///< where no list says what runs: also the forms of the sources, beside the mended ones
+      false;  ///< where no list says what runs: also the published forms, next to the robust ones
   double window_s = 0;   ///< of the window RMS; 0: a fiftieth of the run
   bool allan = true;     ///< Allan deviation of each error
   bool no_skip = false;  ///< do all work, whether an output needs it or not: same numbers
@@ -30,7 +30,7 @@ struct ReplayOptions {
   std::size_t block = 0;  ///< instants at once; 0: by length. Results do not depend on it
 };
 
-/// What a replay works with besides its options; none of it changes what is found.
+/// Resources of a replay apart from its options; they do not change the result.
 struct ReplayWorkspace {
   HeapMeter* heap =
       nullptr;  ///< who can say how much memory an algorithm holds; none: it is not measured

@@ -58,7 +58,7 @@ struct CloseUp {
   RunStretch run;
 };
 
-/// What a run looks like: the best method beside the best single sensor.
+/// The picture of a run: the best method next to the best single sensor.
 struct RunTracks {
   std::optional<std::size_t> algorithm;  ///< whose estimate: the best, else the first in the order
   RunStretch whole;
@@ -70,7 +70,7 @@ struct RunTracks {
 struct SensorResult {
   std::string name, unit;
   ErrorScore error;                      ///< of y - h x; NaN without a reference
-  std::optional<double> noise_variance;  ///< what algorithms were told
+  std::optional<double> noise_variance;  ///< as given to algorithms
   std::string noise_source;              ///< "model", "rest", "scene", ""
   double offset = 0;                     ///< subtracted (mean over the rest)
   double missing = 0;                    ///< share of the instants of the run
@@ -176,7 +176,7 @@ struct AlgorithmResult {
       0;  ///< RMS over time of |w - optimal weights| (Euclid), one input; NaN: unknown
   double variance_error =
       0;  ///< RMS over sensors and time of ln(variance / true error variance); NaN: unknown
-  Timeline weight_track;  ///< a series a sensor; empty when the weights stand still
+  Timeline weight_track;  ///< one series per sensor; empty when the weights are constant
   Timeline variance_track;
   bool watches_faults = false;  ///< it takes sensors out; `faults` and `answers` mean something
   std::vector<FoundFault> faults;

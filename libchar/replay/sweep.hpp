@@ -19,7 +19,7 @@ struct Sweep {
 /// range, more than `most` values.
 Sweep parse_sweep(const std::string& text, const std::string& where, std::size_t most = 100);
 
-/// Every algorithm of the list that is swept stands there once for each combination of the values;
+/// Every algorithm of the list that is swept is listed once for each combination of the values;
 /// one that is not in the list is added.
 std::vector<SceneAlgorithm> swept(const std::vector<Sweep>& sweeps,
                                   const std::vector<SceneAlgorithm>& algorithms);

@@ -19,7 +19,7 @@ struct SensorRecording {
   std::string reference_file;          ///< a log of the reference's own; empty: `file`
   std::vector<std::pair<std::string, std::string>> models;  ///< a sensor, and its model's file
   std::string models_folder;  ///< holds CHANNEL.sensor.yaml of each sensor (a characterization)
-  std::string scene_file;     ///< where the scene will stand; empty: nowhere
+  std::string scene_file;     ///< path of the scene; empty: none
 };
 
 /// A scene as read_scene_file returns it, with every sensor by its own name. Throws Error(usage) for

@@ -9,7 +9,7 @@
 namespace libchar {
 
 /// Reads the log of a signal of kind recording into it, and leaves every other kind as it is. The
-/// path stands as it is, and not relative to a scene. A log that is shorter than the simulation is a
+/// path is used unchanged, not relative to a scene. A log that is shorter than the simulation is a
 /// warning; one of another rate, with several channels or without a sample is Error(usage) at
 /// `place`.
 void read_recorded_signal(SignalSpec& signal,

@@ -17,7 +17,7 @@ namespace libchar {
 struct SceneSensor {
   std::string name;                  ///< unique in the scene
   std::string channel;               ///< of the recording; the name when the file does not say
-  std::optional<SensorModel> model;  ///< inline or from a file beside the scene
+  std::optional<SensorModel> model;  ///< inline or from a file next to the scene
   std::vector<double> h = {1};       ///< row of the observation matrix
   double scale = 1;                  ///< the recording's samples are multiplied by it on reading
   /// Of the samples after `scale`; empty: what the recording says, which another scale makes untrue.

@@ -1,5 +1,5 @@
 #pragma once
-// Files that a scene names: beside it or below it, regular, and only read.
+// Files that a scene names: next to it or below it, regular, and only read.
 
 #include <string>
 #include <vector>
@@ -17,14 +17,14 @@ struct SceneFolder {
 
 /// The path of a file named in a scene under `key` ("reference.recording"). Throws Error(input) at
 /// `where` ("FILE:LINE:COL") for a path that leaves the scene's folder (by "..", absolute, or over
-/// a link), names the scene itself, or is no regular file that exists. Nothing is opened.
+/// a link), names the scene itself, or is not an existing regular file. Nothing is opened.
 std::string resolve_scene_file(const std::string& named,
                                const SceneFolder& folder,
                                const std::string& where,
                                const std::string& key);
 
 /// `file` relative to the folder of `scene`, as the scene would name it; absolute when it is
-/// elsewhere. Throws Error(output) for a name that is no UTF-8: YAML cannot hold it.
+/// elsewhere. Throws Error(output) for a name that is not UTF-8, which YAML does not allow.
 std::string path_for_scene(const std::string& file, const std::string& scene);
 
 /// Throws Error(output) when an output would overwrite the scene or a file that it names, or two

@@ -14,7 +14,7 @@ namespace libchar {
 
 /// What a simulation wrote.
 struct SimulatedLog {
-  std::vector<DeviceDraw> draws;   ///< one a sensor
+  std::vector<DeviceDraw> draws;   ///< one per sensor
   std::vector<std::string> files;  ///< the log first
   std::size_t channels = 0;        ///< of the log
 };

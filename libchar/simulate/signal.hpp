@@ -39,7 +39,7 @@ struct SignalSpec {
 
 struct SignalKind {
   std::string word;               ///< "sine"
-  std::vector<std::string> keys;  ///< that it reads, beside `kind` and `offset`
+  std::vector<std::string> keys;  ///< that it reads, in addition to `kind` and `offset`
   std::string_view meaning;       ///< in docs: the formula
 };
 
@@ -49,7 +49,7 @@ const std::vector<SignalKind>& signal_kind_rows();
 /// Their words.
 const std::vector<std::string>& signal_kinds();
 
-/// Keys that a kind reads, beside `kind` and `offset`.
+/// Keys that a kind reads, in addition to `kind` and `offset`.
 const std::vector<std::string>& signal_keys(const std::string& kind);
 
 /// A signal sample by sample: x(t_k), t_k = k / rate. Results do not depend on the block size.

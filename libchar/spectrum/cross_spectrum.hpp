@@ -32,7 +32,7 @@ struct CrossSpectrum {
 
 /// Welch's method for a pair of records of one length; segments that touch a missing sample of
 /// either are dropped. Densities whatever `options.scaling` says. Throws as welch; Error(numeric)
-/// with fewer than two segments, of which the coherence is 1 whatever the channels are.
+/// with fewer than two segments: the coherence of one is 1 for any channels.
 CrossSpectrum cross_spectrum(std::span<const double> x,
                              std::span<const double> y,
                              double rate_hz,

@@ -1,5 +1,5 @@
 #pragma once
-// FFTW behind a few small classes; nothing beside them includes fftw3.h. Plans are FFTW_ESTIMATE
+// FFTW behind a few small classes; nothing else includes fftw3.h. Plans are FFTW_ESTIMATE
 // (same bits every run), created under one mutex, kept for the next of their length, and run on
 // aligned buffers owned by the object.
 
@@ -29,7 +29,7 @@ class RealFft {
 };
 
 /// Forward complex transforms of n values in place, `count` of them at once: value t of transform i
-/// stands at [i * distance + t * step]. Several at once are faster than one by one, because FFTW
+/// is at [i * distance + t * step]. Several at once are faster than one by one, because FFTW
 /// puts neighbours into one vector. The memory is the caller's and must be aligned to 64 bytes. An
 /// object serves one thread at a time.
 class ComplexFft {

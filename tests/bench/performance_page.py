@@ -26,7 +26,7 @@ SECTIONS = [
     ("Reading CSV", "`parse/from_ch.`: our parser over a plain loop of `std::from_chars` on the same bytes. "
                     "`comma`: decimal commas.",
      ["{build}/tests/bench/csv_bench", "100"], False),
-    ("Allan deviation", "Speed beside memcpy, and the largest relative error against 128-bit fixed point under "
+    ("Allan deviation", "Speed compared with memcpy, and the largest relative error against 128-bit fixed point under "
                         "offsets and drifts.",
      ["{build}/tests/bench/allan_bench", "7"], False),
     ("Spectrum", "", ["{build}/tests/bench/spectrum_bench"], False),
@@ -85,7 +85,7 @@ def main():
         page = ["# Performance", "",
                 "Written by `.ci/figures performance`: the programs of `tests/bench`, as they print. Where the time "
                 "of the main job goes, and what was tried: "
-                "[theory/speed.md](theory/speed.md). Error against time: [accuracy.md](accuracy.md).", "",
+                "[dev/speed.md](dev/speed.md). Error against time: [accuracy.md](accuracy.md).", "",
                 machine(build) + ".", ""]
         for row in SECTIONS:
             page += section(*row, values)

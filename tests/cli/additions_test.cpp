@@ -1,4 +1,4 @@
-// What docs/contributing.md says that adding costs: a program with one fusion algorithm, log
+// What docs/dev/contributing.md says that adding costs: a program with one fusion algorithm, log
 // format, export target, Allan statistic and verb more, each from its own file in
 // tests/cli/additions, has them in its help, lists, JSON, work and messages. The pages' tests
 // compare with the same tables, so that an addition without its row in docs/ fails there.

@@ -155,7 +155,7 @@ TEST_CASE("simulate: what cannot be is one sentence, and nothing is written") {
     int code;
     std::string says;
   } cases[] = {
-      {{model, "-o", out}, 2, "for how long?"},
+      {{model, "-o", out}, 2, "the length is missing"},
       {{bench.file("n.yaml", "format: sensor-model\nversion: 1\n"), "-o", out, "--samples", "5"},
        2,
        "states no sampling rate"},

@@ -9,6 +9,7 @@ import unittest
 TESTS = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TESTS))
 import structure  # noqa: E402
+import words  # noqa: E402
 from gates import cpp  # noqa: E402
 from gates.owners import QUESTIONS  # noqa: E402
 
@@ -172,6 +173,38 @@ class Gates(unittest.TestCase):
                          '{ char c = \'{\'; };\n}\n')
         found = [("::".join(s.name for s in (*within, scope)), scope.line) for within, scope in tree.walk()]
         self.assertEqual(found, [("", 1), ("::a::b", 1), ("::a::b::S", 4)])
+
+
+class Words(unittest.TestCase):
+    """Sentences as they were, and sentences of the same kind that are right."""
+
+    def found(self, text, rules=words.RULES):
+        return [name for name, *_ in words.hits(words.prose_of_page(text), rules, page=True)]
+
+    def test_refused(self):
+        for rule, text in (("per", "one `CHANNEL.sensor.yaml` a channel."), ("per", "deviations, a flag a sensor"),
+                           ("per", "a column a number, all digits"), ("per", "ten averaging times\na decade"),
+                           ("per", "41 ns a sample"), ("whom", "the device whom the mean is of"),
+                           ("is none", "a picture of 9000 pixels is none that can be drawn"),
+                           ("is no", "the record is no noise"), ("has not", "a channel that the recording has not,"),
+                           ("that there is", "the figures that there are"), ("told", "not told from another term"),
+                           ("stands", "the log in which it stands"), ("beside", "the folder beside it"),
+                           ("of which", "an array of which more is to be said"), ("exponent", "agrees to 1e-12"),
+                           ("digits", "regret 26070.09 %")):
+            self.assertIn(rule, self.found(text), text)
+        self.assertEqual(self.found("rows to skip? (default: 0)", [words.QUESTION]), ["question"])
+
+    def test_accepted(self):
+        for text in ("one file per channel", "a file in a folder", "a scene names a file", "There is no gap.",
+                     "empty where there is none", "when it took a channel out",
+                     "It is no longer used.", "It has not changed.", "letters stand for axes", "`told` and 0.24 deg/√h",
+                     "```sh\nallan --taus 1e-3\n```", "| 1e-12 | 0.004021 |", "one second a minute later"):
+            self.assertEqual(self.found(text), [], text)
+
+    def test_sources(self):
+        strings = words.strings('f("a line "\n"a sensor"); // told\nchar c = \'"\'; g(R"(it stands here)");')
+        self.assertEqual(strings, [(1, "a line a sensor"), (3, "it stands here")])
+        self.assertEqual(words.comments("/// one\n/// two\nint a;  ///< three\n"), [[1, " one\n two"], [3, " three"]])
 
 
 if __name__ == "__main__":

@@ -206,7 +206,7 @@ std::string bash_completion(const ProgramUsage& program) {
   for (const VerbUsage& verb : program.verbs)
     text += fmt::format("    {}) echo {} ;;\n", verb.name, quoted(all_flags(verb)));
   text += fmt::format(
-      "  esac\n}}\n\n# What may stand behind a flag of a verb; nothing for one without a "
+      "  esac\n}}\n\n# Values of a flag of a verb; nothing for one without a "
       "value.\n_{}_value() {{\n  case \"$1 $2\" in\n",
       program.name);
   for (const VerbUsage& verb : program.verbs)

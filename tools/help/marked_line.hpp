@@ -8,7 +8,7 @@
 namespace sensorchar {
 
 /// "\n  | 0.163,-4,4\n  |          ^" for a place FILE:LINE:COLUMN (byte N), as docs/errors.md defines
-/// it; "" where the place is none of a readable text, or the line holds what no terminal shows.
+/// it; "" where the text is not readable, or the line has characters that no terminal shows.
 std::string marked_line(const libchar::Problem& problem);
 
 }  // namespace sensorchar

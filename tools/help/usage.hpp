@@ -1,5 +1,5 @@
 #pragma once
-// What the program can be told: its verbs with their arguments and options, as they are parsed. Help, man pages and
+// The command line of the program: its verbs with their arguments and options, as they are parsed. Help, man pages and
 // completions are made of it (help_page.hpp, man_page.hpp, completion.hpp), so that none of them can lag behind.
 
 #include <string>
@@ -16,7 +16,7 @@ struct OptionUsage {
   std::string name;                ///< what stands for the value, "" for a flag
   ValueKind kind = ValueKind::none;
   std::vector<std::string> words;  ///< the values that are known beforehand
-  bool comma_list = false;         ///< several of them may stand in one value
+  bool comma_list = false;         ///< one value may list several
   bool required = false, repeatable = false;
   std::string group;                  ///< heading in the help, "" for the verb's own
   std::string help;                   ///< what it does, unit, default

@@ -182,7 +182,7 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
 VerbEntry verb_allan() {
   return {3,
           "allan",
-          "Allan deviation and its relatives of every channel, with intervals, as CSV or JSON",
+          "Compute Allan deviations and their relatives, with intervals, as CSV or JSON",
           allan_options,
           {{"a few averaging times of one channel",
             "sensorchar allan imu.csv -c gyro_z --taus 0.1s,1s,10s"},

@@ -358,7 +358,7 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
 VerbEntry verb_bench() {
   return {13,
           "bench",
-          "Run time against error: ways to get noise coefficients, fusion algorithms",
+          "Measure run time against error: estimators of noise coefficients, fusion algorithms",
           bench_options,
           {{"the whole comparison on short records, under a minute", "sensorchar bench --quick"},
            {"how many sensors, and how long a record, for a target",

@@ -333,8 +333,8 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
       .add_text(
           "--limits",
           verb->limits,
-          "what a data sheet allows of each noise term (docs/recordings.md): pass, fail or not "
-          "decided; exit code 6 when one fails")
+          "check each noise term against data-sheet limits (docs/recordings.md): pass, fail or "
+          "undecided; exit code 6 when one fails")
       .value_name("FILE");
   options.add_count(
       "--seed", verb->seed, "seed of the simulations of --verify and --pool (default: 1)");
@@ -362,7 +362,7 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
 VerbEntry verb_characterize() {
   return {2,
           "characterize",
-          "everything about a recording: report.html, report.json, curves.csv, a "
+          "Analyse a recording completely: report.html, report.json, curves.csv, one "
           "sensor model per channel",
           characterize_options,
           {{"everything about a recording", "sensorchar characterize imu.csv -o report"},

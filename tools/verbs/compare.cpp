@@ -142,9 +142,9 @@ std::function<void()> compare_options(VerbOptions& options, Session& session) {
 VerbEntry verb_compare() {
   return {9,
           "compare",
-          "Two reports of replay, or two characterizations, side by side",
+          "Compare two replays, or two characterizations",
           compare_options,
-          {{"did a sensor change between two recordings?", "sensorchar compare monday friday"},
+          {{"two recordings of one sensor", "sensorchar compare monday friday"},
            {"for a build server: exit code 6 when an error grew by more than 5 %",
             "sensorchar compare array-replay new-replay --fail-if rmse+5%"}}};
 }

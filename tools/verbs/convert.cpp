@@ -94,7 +94,7 @@ std::function<void()> convert_options(VerbOptions& options, Session& session) {
 VerbEntry verb_convert() {
   return {10,
           "convert",
-          "From one log format to another, without losing a bit",
+          "Convert a log to another format, bit by bit",
           convert_options,
           {{"a table as NumPy file, bit by bit", "sensorchar convert imu.csv -o imu.npy"},
            {"one channel of the first minute",

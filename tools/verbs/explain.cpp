@@ -142,7 +142,7 @@ std::function<void()> explain_options(VerbOptions& options, Session& session) {
 VerbEntry verb_explain() {
   return {11,
           "explain",
-          "What a finding or an error means, and what to do about it",
+          "Explain a finding or an error: meaning, effect, remedy",
           explain_options,
           {{"one of them", "sensorchar explain held_values"},
            {"an error", "sensorchar explain E0304"},

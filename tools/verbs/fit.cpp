@@ -233,7 +233,7 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
 VerbEntry verb_fit() {
   return {5,
           "fit",
-          "noise coefficients with 95 % intervals, from a log or from a curve digitised elsewhere",
+          "Fit noise coefficients with 95 % intervals to a log, or to a curve digitized elsewhere",
           fit_options,
           {{"coefficients of every channel", "sensorchar fit imu.csv"},
            {"coefficients of an Allan curve that was read off a data sheet, of a record of 10 min",

@@ -149,7 +149,7 @@ std::function<void()> fleet_compare_options(VerbOptions& options, Session& sessi
 VerbEntry verb_fleet_compare() {
   return {25,
           "fleet-compare",
-          "two fleets, or two batches of one: what differs by more than chance",
+          "Compare two fleets, or two batches of one: significant differences",
           fleet_compare_options,
           {{"two batches of one fleet", "sensorchar fleet compare fleet --batches 2026-11,2026-12"},
            {"two fleets, as JSON", "sensorchar fleet compare march april --json"}}};

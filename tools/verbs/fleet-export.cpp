@@ -105,7 +105,7 @@ std::function<void()> export_options(VerbOptions& options, Session& session) {
 VerbEntry verb_fleet_export() {
   return {24,
           "fleet-export",
-          "what is left of a fleet as jobs of Slurm, Snakemake or GNU parallel",
+          "Export the missing units of a fleet as jobs of Slurm, Snakemake or GNU parallel",
           export_options,
           {{"job arrays of ten minutes", "sensorchar fleet export fleet --to slurm --job 10min"},
            {"all cores of this machine", "sensorchar fleet export fleet --to parallel"}}};

@@ -117,8 +117,9 @@ std::function<void()> merge_options(VerbOptions& options, Session& session) {
   options
       .add_text("--name", verb->name, "of the fleet, in words (default: the names of the folders)")
       .value_name("TEXT");
-  options.add_flag(
-      "--partial", verb->partial, "merge what there is; devices without a result stand as such");
+  options.add_flag("--partial",
+                   verb->partial,
+                   "merge the existing results; devices without a result are listed");
   options.add_flag("--force", verb->force, "overwrite the report of an earlier merge");
   options.add_flag("--json", verb->json, "print lot.json to stdout instead of the tables");
   return [&session, verb] { run_merge(session, *verb); };
@@ -129,7 +130,7 @@ std::function<void()> merge_options(VerbOptions& options, Session& session) {
 VerbEntry verb_fleet_merge() {
   return {23,
           "fleet-merge",
-          "the results of a fleet as one report: spread, batches, outliers, limits",
+          "Merge the results of a fleet into one report: spread, batches, outliers, limits",
           merge_options,
           {{"the report of the lot", "sensorchar fleet merge fleet -o report"},
            {"of batches that were planned on two machines",

@@ -180,7 +180,7 @@ VerbEntry verb_fleet_plan() {
   return {
       20,
       "fleet-plan",
-      "many logs as units of work for any engine",
+      "Split many logs into jobs",
       plan_options,
       {{"all logs of a folder", "sensorchar fleet plan logs/*.npy --rate 200 -o fleet"},
        {"with digests that sha256sum has taken",

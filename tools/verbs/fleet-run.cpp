@@ -134,12 +134,12 @@ std::function<void()> run_options(VerbOptions& options, Session& session) {
       .required();
   options.add_count("--threads",
                     verb->threads,
-                    "threads at most (default: one a core); results never depend on it",
+                    "threads at most (default: one per core); results never depend on it",
                     1,
                     1024);
   options.add_flag("--strict",
                    session.strict,
-                   "a warning about a log ends the run with exit code 3, once all units are done");
+                   "end with exit code 3 after a warning about a log, once all units are done");
   options.add_flag("--json", verb->json, "print what was done as JSON");
   return [&session, verb] { run_run(session, *verb); };
 }
@@ -149,7 +149,7 @@ std::function<void()> run_options(VerbOptions& options, Session& session) {
 VerbEntry verb_fleet_run() {
   return {21,
           "fleet-run",
-          "units of a fleet, those without a result yet (exit code 75: try again later)",
+          "Run the units of a fleet that have no result yet (exit code 75: try again later)",
           run_options,
           {{"all of a fleet, one unit after the other", "sensorchar fleet run fleet"},
            {"two of its units",

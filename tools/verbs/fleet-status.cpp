@@ -143,7 +143,7 @@ std::function<void()> status_options(VerbOptions& options, Session& session) {
 VerbEntry verb_fleet_status() {
   return {22,
           "fleet-status",
-          "how far a fleet is: units done, left, damaged",
+          "Show the progress of a fleet: units done, left, damaged",
           status_options,
           {{"how far it is", "sensorchar fleet status fleet"},
            {"the tasks that are left, for any shell", "sensorchar fleet status fleet --list"}}};

@@ -102,7 +102,7 @@ std::function<void()> fuse_options(VerbOptions& options, Session& session) {
 VerbEntry verb_fuse() {
   return {9,
           "fuse",
-          "A log fused with what a replay learnt: estimates, their deviations, a flag a sensor",
+          "Fuse a log with the result of a replay: estimates, deviations, one flag per sensor",
           fuse_options,
           {{"a log by what the replay recommends",
             "sensorchar fuse array.csv --with array-replay -o fused.csv"},

@@ -114,7 +114,7 @@ std::function<void()> inspect_options(VerbOptions& options, Session& session) {
 VerbEntry verb_inspect() {
   return {1,
           "inspect",
-          "What is in a log: channels, rate, gaps, repairs, resolution",
+          "Show the contents of a log: channels, rate, gaps, repairs, resolution",
           inspect_options,
           {{"what a log holds", "sensorchar inspect imu.csv"},
            {"a log without stamps, names and units",

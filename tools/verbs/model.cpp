@@ -243,7 +243,7 @@ std::function<void()> model_options(VerbOptions& options, Session& session) {
 VerbEntry verb_model() {
   return {6,
           "model",
-          "What a sensor model says; --to: its numbers for Kalibr, Gazebo, VINS and others",
+          "Show a sensor model, or export it (--to) for Kalibr, Gazebo, VINS and others",
           model_options,
           {{"what a model says", "sensorchar model report/gyro_z.sensor.yaml"},
            {"the numbers of an IMU as Kalibr wants them, its z axes for all",

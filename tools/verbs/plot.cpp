@@ -160,7 +160,7 @@ void add_looks(VerbOptions& options, PlotVerb& verb) {
       .value_name("LENGTH");
   options.add_enum("--legend",
                    verb.drawing.legend,
-                   "where names stand (auto: in a corner without curves, else below)");
+                   "place of the names (auto: in a corner without curves, else below)");
   options.add_text(
       "--title", verb.figure.title, "above the plot (default: none, for a caption says it)");
   options.add_flag("--grey", verb.drawing.grey, "greys in place of colours");
@@ -196,7 +196,7 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
                      verb->figure.kind,
                      figure_words(),
                      "which figure (default: allan of a characterization, front of a replay)");
-  options.add_flag("--list", verb->list, "the figures that there are").alone();
+  options.add_flag("--list", verb->list, "list the figures").alone();
   options
       .add_texts(
           "-c,--channel",
@@ -227,7 +227,7 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
 VerbEntry verb_plot() {
   return {9,
           "plot",
-          "A figure of reports, curves and models: SVG, PDF, PNG, gnuplot, CSV",
+          "Draw a figure of reports, curves and models: SVG, PDF, PNG, gnuplot, CSV",
           plot_options,
           {{"the Allan deviation of one channel for a paper",
             "sensorchar plot report -c gyro_z -o gyro_z.pdf"},

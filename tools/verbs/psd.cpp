@@ -131,8 +131,9 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
       "--json", verb->json, "one JSON document, with degrees of freedom and intervals");
   Option plot = options.add_flag("--plot", verb->plot, "a plot for the terminal instead of CSV");
   plot.excludes(json);
-  options.add_flag(
-      "--lines", verb->options.lines, "list the spectral lines (with --json: beside the spectra)");
+  options.add_flag("--lines",
+                   verb->options.lines,
+                   "list the spectral lines (with --json: in addition to the spectra)");
   add_spectrum_options(options, verb->options.spectrum, verb->options.segment_s);
   options.add_enum("--average",
                    verb->options.average,
@@ -186,7 +187,7 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
 VerbEntry verb_psd() {
   return {4,
           "psd",
-          "power spectra (Welch), cross spectra, coherence, spectrograms, as CSV or JSON",
+          "Compute power spectra (Welch), cross spectra, coherence, spectrograms, as CSV or JSON",
           psd_options,
           {{"a spectrum of segments of 20 s, into a table",
             "sensorchar psd imu.csv -c gyro_z --segment 20s -o psd.csv"},

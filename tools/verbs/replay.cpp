@@ -268,7 +268,7 @@ void run_replay(Session& session, ReplayVerb verb) {
   if (verb.list) return print_algorithms(session, verb.json);
   if (verb.source.path.empty())
     throw usage_error("E0910", "SCENE")
-        .says("which scene or recording?")
+        .says("a scene or a recording is missing")
         .hint("--list names the algorithms");
   const Scene scene = read_scene(verb);
   if (verb.explain) return print_plan(session, verb, scene, options_of(verb));
@@ -327,8 +327,8 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   options
       .add_flag("--published",
                 verb->published,
-                "also run the algorithms as their sources have them (…-published), beside the "
-                "mended ones")
+                "also run the algorithms exactly as published (…-published), next to the robust "
+                "ones")
       .excludes(algorithms);
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
       .value_name("SETTING")
@@ -384,7 +384,7 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
 VerbEntry verb_replay() {
   return {8,
           "replay",
-          "Every fusion algorithm that a scene has the data for, compared: report.html, "
+          "Compare all fusion algorithms on a recording or a scene: report.html, "
           "report.json, report.md",
           replay_options,
           {{"every algorithm on the channels of a recording",

@@ -55,7 +55,7 @@ std::function<void()> report_options(VerbOptions& options, Session& /*session*/)
   const Option latex =
       options.add_flag("--latex", verb->latex, "a tabular of LaTeX, which needs no package")
           .excludes(markdown);
-  options.add_flag("--csv", verb->csv, "a column a number, all digits")
+  options.add_flag("--csv", verb->csv, "one number per column, all digits")
       .excludes(latex)
       .excludes(markdown);
   options
@@ -74,7 +74,7 @@ std::function<void()> report_options(VerbOptions& options, Session& /*session*/)
 VerbEntry verb_report() {
   return {9,
           "report",
-          "The table of a report: Markdown, LaTeX or CSV",
+          "Print the table of a report: Markdown, LaTeX or CSV",
           report_options,
           {{"the coefficients as a table for LaTeX", "sensorchar report report --latex"},
            {"the ranking of a replay", "sensorchar report array-replay"}}};

@@ -73,7 +73,7 @@ void set_length(const SimulateVerb& verb, ArraySimulation& simulation) {
         std::round(*verb.duration_s * simulation.rate_hz), 0, kMostSamples);
   if (simulation.samples == 0)
     throw usage_error("E0721", "simulate")
-        .says("for how long?")
+        .says("the length is missing")
         .hint("give --duration or --samples");
   if (simulation.samples == kMostSamples)
     throw usage_error("E0721", verb.duration_s ? "--duration" : "--samples")
@@ -171,7 +171,7 @@ void place_outputs(SimulateVerb& verb, const Scene& scene) {
     verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
   if (!verb.no_scene && !scene_given && writes_through(verb.output))
     throw usage_error("E0721", "--output")
-        .says("beside a pipe or device there is no place for a scene")
+        .says("there is no place for a scene next to a pipe or device")
         .got(verb.output)
         .hint("--no-scene, or --scene FILE");
   std::vector<std::string> outputs = {verb.output};
@@ -325,7 +325,7 @@ void add_input_options(VerbOptions& options, SimulateVerb& verb) {
                    "times (default: they are of that recording, not of the sensor)");
   options.add_count("--oversampling",
                     verb.oversampling,
-                    "signals and noise are made so many times faster than the samples (default: 1)",
+                    "oversampling factor of the simulation (default: 1)",
                     1,
                     1024);
 }
@@ -371,7 +371,7 @@ std::function<void()> simulate_options(VerbOptions& options, Session& session) {
 VerbEntry verb_simulate() {
   return {7,
           "simulate",
-          "A recording with known truth, from sensor models or a scene",
+          "Simulate a recording with known truth, from sensor models or a scene",
           simulate_options,
           {{"ten minutes of a sensor at rest",
             "sensorchar simulate report/gyro_z.sensor.yaml --duration 10min -o simulated.csv"},

@@ -161,7 +161,7 @@ std::function<void()> verify_options(VerbOptions& options, Session& session) {
   options.add_flag(
       "--allow-read",
       verb->allow_read,
-      "the report's command may read files elsewhere than here (or --in) and beside the report");
+      "allow the report's command to read files outside this folder (or --in) and the report's");
   options.only(
       "with --rerun", [verb = verb.get()] { return !verb->again.empty(); }, {"--allow-read"});
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
@@ -171,13 +171,13 @@ std::function<void()> verify_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_verify() {
-  return {12,
-          "verify",
-          "Are results and their inputs still what the report was written with?",
-          verify_options,
-          {{"are the files of a folder as they were written?", "sensorchar verify report"},
-           {"are the numbers those of this program as well?",
-            "sensorchar verify report --rerun again"}}};
+  return {
+      12,
+      "verify",
+      "Check that results and input files have not changed since the report was written",
+      verify_options,
+      {{"check the files of a folder", "sensorchar verify report"},
+       {"repeat the analysis and compare the numbers", "sensorchar verify report --rerun again"}}};
 }
 
 }  // namespace sensorchar

@@ -14,7 +14,7 @@ namespace libchar {
 GrowthCheck parse_characterization_check(std::string_view text);
 
 /// One sentence for each term that fails: in B it is larger than allowed by its whole 95 % interval of the ratio (or above the limit
-/// of A by its whole interval), or A knows it and B does not. Throws Error(usage) when `label` stands in neither report, and
+/// of A by its whole interval), or A knows it and B does not. Throws Error(usage) when `label` is in neither report, and
 /// Error(check) when A has no such term: a check that cannot fail.
 std::vector<std::string> failures(const CharacterizationComparison& comparison,
                                   const GrowthCheck& check);

@@ -8,8 +8,8 @@
 
 namespace libchar::detail {
 
-/// Of the report of a characterization, or of what is printed of curves, spectra and fits: all but notes, the worst first; the subject is
-/// the channel. None where the document has none.
+/// Of the report of a characterization, or of what is printed of curves, spectra and fits: all but
+/// notes, the worst first; the subject is the channel. None where the document has none.
 std::vector<Finding> reported_findings(const MapReader& document);
 
 }  // namespace libchar::detail

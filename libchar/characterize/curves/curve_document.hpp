@@ -41,7 +41,7 @@ struct AllanDocument {
 struct SpectrumOfChannel {
   std::string name, unit, value_unit;
   Spectrum spectrum;           ///< its sides and scaling are said by the document
-  std::vector<Interval> ci95;  ///< one a bin; NaN: not known
+  std::vector<Interval> ci95;  ///< one per bin; NaN: unknown
   PredictedCurve predicted;
   std::vector<SpectralLine> lines;
   bool with_lines = false;  ///< they were asked for
@@ -81,7 +81,7 @@ struct VerificationOfChannel {
 AllanOfChannel allan_of_channel(const Channel& channel,
                                 const AllanCurve& curve,
                                 const ModelCurve* model = nullptr);
-/// `ci95`: one a bin.
+/// `ci95`: one per bin.
 SpectrumOfChannel spectrum_of_channel(const Channel& channel,
                                       const Spectrum& spectrum,
                                       const std::vector<std::optional<Interval>>& ci95,

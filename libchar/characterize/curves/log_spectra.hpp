@@ -36,7 +36,7 @@ struct LogSpectra {
   std::vector<std::string> notes;  ///< "gyro_x: …": of single channels, and why one is missing
 };
 
-/// Reads the log once: with a segment given as it streams, in the memory of one segment a channel; else whole. Throws as read_log and
+/// Reads the log once: with a segment given as it streams, in the memory of one segment per channel; else whole. Throws as read_log and
 /// welch, Error(numeric) where the sampling rate is not known or no channel gives a spectrum.
 LogSpectra log_spectra(const std::string& path,
                        const LogSpectraOptions& options = {},

@@ -1,5 +1,5 @@
 #pragma once
-// A YAML or JSON document as a tree that remembers where every key and value stood, so that a
+// A YAML or JSON document as a tree that remembers the place of every key and value, so that a
 // refusal can name line and column.
 
 #include <optional>

@@ -1,12 +1,12 @@
 #pragma once
 // The words of enums, one table each: what the command line offers, what YAML and JSON hold, and
-// what messages list. A table stands beside its enum:
+// what messages list. A table is next to its enum:
 //
 //     enum class Sides { one, two };
 //     template <>
 //     inline constexpr auto enum_table<Sides> = enum_words<Sides, "one two">;
 //
-// Words in another order than the enum's, or with blanks in them, stand beside their values:
+// Words in another order than the enum's, or with blanks in them, are next to their values:
 //
 //     std::to_array<EnumWord<Sides>>({{Sides::two, "two"}, {Sides::one, "one"}})
 

@@ -118,7 +118,7 @@ struct FieldText {
 };
 
 struct Field {
-  /// Empty: an empty line of YAML, or the keys of a part stand beside those of the object.
+  /// Empty: an empty line of YAML, or the keys of a part are among those of the object.
   std::string_view key;
   Slot (*slot)(void* object) = nullptr;
   FieldText text = {};
@@ -127,7 +127,7 @@ struct Field {
   Layout layout = Layout::one;
   bool optional = false;                         ///< the member itself may be empty
   std::optional<Value> constant = std::nullopt;  ///< in place of the slot: always written
-  /// In place of the slot, for what is no single member.
+  /// In place of the slot, for fields other than a single member.
   void (*read)(const MapReader& at, std::string_view key, void* object) = nullptr;
   void (*write)(const Field& field, const void* object, std::vector<Entry>& out) = nullptr;
 };
@@ -327,7 +327,7 @@ auto maybe_part(std::string_view key, const Fields<Part>& rows, const FieldText&
   return Row<T>(std::move(row));
 }
 
-/// A list of parts in columns; without a key their lists stand beside the keys of the object.
+/// A list of parts in columns; without a key their lists are among the keys of the object.
 template <auto First, auto... Rest, class Part>
 auto columns_of(std::string_view key, const Fields<Part>& rows, const FieldText& text = {}) {
   auto row = list_of<First, Rest...>(key, rows, text);
@@ -342,13 +342,13 @@ auto part(std::string_view key, const Fields<Part>& rows, const FieldText& text 
   return Row<T>(Field{key, &fields_detail::slot_at<Member>, text, "", rows.rows});
 }
 
-/// The keys of a part beside those of the object.
+/// The keys of a part among those of the object.
 template <auto Member, class Part>
 auto beside(const Fields<Part>& rows) {
   return part<Member>("", rows);
 }
 
-/// The same about the object itself: the file has a level that the struct has not.
+/// The same about the object itself: the file has a level that the struct lacks.
 template <class T>
 Row<T> level(std::string_view key, const Fields<T>& rows, const FieldText& text = {}) {
   return Field{key, [](void* object) -> Slot { return object; }, text, "", rows.rows};
@@ -380,7 +380,7 @@ Row<T> empty_line() {
   return Field{""};
 }
 
-/// What is no single member: Read is void(const MapReader&, std::string_view key, T&), Write is
+/// Fields other than a single member: Read is void(const MapReader&, std::string_view key, T&), Write is
 /// void(const Field&, const T&, std::vector<Entry>&).
 template <class T, auto Read, auto Write>
 Row<T> custom(std::string_view key, std::string_view kind, const FieldText& text = {}) {

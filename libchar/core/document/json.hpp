@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 /// UTF-8, nothing behind the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
 Json parse_json(std::string_view text, const std::string& file);
 
-/// JSON has no infinity and no NaN: what is not finite, or not there, is null; a status beside it says why.
+/// JSON has no infinity and no NaN: infinite, NaN and absent values are null; a status next to them says why.
 Json json_number(double value);
 Json json_number(const std::optional<double>& value);
 

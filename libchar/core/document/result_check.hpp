@@ -13,7 +13,7 @@ enum class FileState {
   changed,  ///< another one
   missing,  ///< cannot be found or read
   there,  ///< the document has no digest of it (the document itself, streamed estimates, results of older versions)
-  unknown,  ///< was no file (standard input)
+  unknown,  ///< not a file (standard input)
 };
 
 /// "same", "changed"…
@@ -32,7 +32,7 @@ struct ResultCheck {
   bool holds() const;  ///< nothing changed, nothing missing
 };
 
-/// One of them, which may be larger than a document that people write; discarded where it is no JSON. Throws Error(input) where it cannot be
+/// One of them, which may be larger than a document that people write; discarded if it is not JSON. Throws Error(input) where it cannot be
 /// read.
 Json result_document(const std::string& path);
 

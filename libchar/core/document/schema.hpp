@@ -24,7 +24,7 @@ inline constexpr NumberRange kAnyNumber{};
 inline constexpr NumberRange kNotNegative{0, std::numeric_limits<double>::max(), false};
 inline constexpr NumberRange kPositive{0, std::numeric_limits<double>::max(), true};
 
-/// One map of a document. The constructor refuses what is no map and every key outside `keys`.
+/// One map of a document. The constructor refuses anything but a map and every key outside `keys`.
 /// A key whose value is null counts as absent.
 class MapReader {
  public:
@@ -56,12 +56,12 @@ class MapReader {
   std::string word(std::string_view key, const std::vector<std::string>& words) const;
   /// A list of exactly two numbers, the first below the second.
   std::pair<double, double> interval(std::string_view key) const;
-  /// The same, `value` standing behind `key` or in its list; of a report an end may be null:
+  /// The same, `value` following `key` or in its list; in a report an end may be null:
   /// infinite.
   Interval interval_in(std::string_view key, const Document& value) const;
   /// A list of numbers; one bare number is a list of one.
   std::vector<double> numbers(std::string_view key) const;
-  /// The same, `value` standing in the list behind `key`.
+  /// The same, `value` being in the list after `key`.
   std::vector<double> numbers_in(std::string_view key, const Document& value) const;
   /// A list of texts; one bare text is a list of one.
   std::vector<std::string> texts(std::string_view key) const;
@@ -101,7 +101,7 @@ void check_format(const Document& document,
                   std::string_view format,
                   std::uint64_t version);
 
-/// A number of the file's own, for messages: what stands there, as it is written.
+/// A number of the file's own, for messages: exactly as written there.
 std::string shown(const Document& value);
 
 }  // namespace libchar

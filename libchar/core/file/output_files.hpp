@@ -62,7 +62,7 @@ WrittenFile as_written(const OutputFile& file);
 void name_files(Json& document, const std::vector<OutputFile>& outputs);
 void name_files(Json& document, const std::vector<WrittenFile>& outputs);
 
-/// The names that a document in a file gives so, in their order; none where it is no such document.
+/// The names that a document in a file gives so, in their order; empty if it is not such a document.
 /// Throws Error(input) where it cannot be read.
 namespace detail {
 std::vector<std::string> named_files(const std::string& document_file);

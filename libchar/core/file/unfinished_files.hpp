@@ -22,7 +22,7 @@ class GivingNames {
 
 enum class Discarded {
   nothing_written,  ///< no output has got its name
-  some_written,     ///< outputs of this process stand there, whole
+  some_written,     ///< outputs of this process are there, whole
   not_now           ///< outputs are getting their names: ask again when they have
 };
 

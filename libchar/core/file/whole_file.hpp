@@ -27,7 +27,7 @@ class WholeFile {
 
   void write(std::string_view bytes);
   void write(const void* data, std::size_t size) { write({static_cast<const char*>(data), size}); }
-  /// Replaces bytes at `offset`, all of which were written before (for headers that hold a count). Throws Error(output) where more was
+  /// Replaces bytes at `offset` that were written before (for headers that hold a count). Throws Error(output) where more was
   /// written than is kept back and the file is a pipe.
   void rewrite(std::size_t offset, std::string_view bytes);
   /// Everything of commit() that can fail for want of space or rights, short of taking the name.
@@ -52,14 +52,14 @@ class WholeFile {
   std::string path_, temporary_, buffer_;
   int descriptor_ = -1;
   std::int64_t begin_ =
-      0;  ///< where our first byte stands in the file; negative where nothing can be gone back to
+      0;  ///< place of our first byte in the file; negative where nothing can be gone back to
   bool flushed_ = false, overwrite_ = false, special_ = false;
 };
 
 /// Removes temporary files that a process which is no more has left in the folder.
 void remove_litter(const std::string& folder);
 
-/// The path leads to a device, a pipe or an open file of this process (/dev/stdout): what stands beside it is no place for files.
+/// The path leads to a device, a pipe or an open file of this process (/dev/stdout): its folder is not a place for files.
 bool writes_through(const std::string& path);
 
 /// Throws what the constructor of WholeFile would, before any work is done for the file; leaves nothing behind.

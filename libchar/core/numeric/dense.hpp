@@ -64,7 +64,7 @@ Eigen::MatrixXd cholesky_inverse(const Eigen::MatrixXd& a);
 /// A^-1 b of a symmetric semidefinite A, by L D L' with pivoting.
 Eigen::VectorXd ldlt_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
-/// I - Q Q': what is left beside the orthonormal columns of Q.
+/// I - Q Q': the complement of the orthonormal columns of Q.
 Eigen::MatrixXd complement_projector(const Eigen::MatrixXd& q);
 /// Y - Q (Q' Y).
 Eigen::MatrixXd without_columns_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& y);

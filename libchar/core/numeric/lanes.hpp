@@ -7,7 +7,7 @@
 namespace libchar {
 
 using Four = double __attribute__((vector_size(32)));
-// The attributes stand before the "=": clang ignores `aligned` behind it.
+// The attributes precede the "=": clang ignores `aligned` after it.
 using FourInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 static_assert(alignof(FourInMemory) == 8);
 

@@ -6,7 +6,7 @@
 
 namespace libchar {
 
-/// Beyond it a sample is no measurement, and powers of it would overflow: analyses take it as missing.
+/// Beyond it a sample is not a measurement, and its powers would overflow: it counts as missing.
 inline constexpr double kLargestSample = 1e100;
 
 /// Samples that are present and beyond it.

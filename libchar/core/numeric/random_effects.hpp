@@ -19,7 +19,7 @@ struct RandomEffects {
   double p = 1;  ///< probability of more scatter without any spread (chi-square of count - 1)
 };
 
-/// Throws nothing; `variance` > 0, one a value, at least one value.
+/// Throws nothing; `variance` > 0, one per value, at least one value.
 RandomEffects random_effects(std::span<const double> value, std::span<const double> variance);
 
 struct Outlier {

@@ -1,6 +1,6 @@
 #pragma once
 // Partial states as bytes: what one machine has found of its part of a log, for another to go on from. Every number comes back with
-// the bits it had, on any machine, and bytes that are not what was written are told, never read:
+// the bits it had, on any machine, and changed bytes are detected, never read:
 //
 //   magic (8 bytes) | version (4) | length of the content (8) | kind (text) and content | SHA-256 of all before it (32)
 //
@@ -87,7 +87,7 @@ class StateReader {
   std::vector<double> reals();
   std::vector<std::uint64_t> numbers();
   std::vector<unsigned char> flags();
-  /// How many elements a list has of which each takes at least `least` bytes.
+  /// Number of elements of a list; each takes at least `least` bytes.
   std::size_t count(std::size_t least);
 
   template <class... T>

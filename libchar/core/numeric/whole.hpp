@@ -6,7 +6,7 @@
 
 namespace libchar {
 
-/// The whole part of `value`, the nearer end of the range where it lies beyond, the lower end of what is no number.
+/// The whole part of `value`, the nearer end of the range where it lies beyond, the lower end if it is not a number.
 template <std::integral Whole>
 Whole clamped_whole(double value, Whole lowest, Whole highest) {
   if (!(value > static_cast<double>(lowest))) return lowest;

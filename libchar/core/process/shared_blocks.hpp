@@ -1,7 +1,7 @@
 #pragma once
 // Blocks of one stream of samples that two stages want transformed, and one of them transforms: Welch's spectrum goes by
 // halves of its segments, the fit wants the squared cosine transforms of just such blocks, and those cost next to nothing
-// beside a Fourier transform of the same samples. The two do not know each other:
+// in parallel with a Fourier transform of the same samples. The two do not know each other:
 //
 //   SharedBlocks blocks(length, taker);             // taker: the stage that only wants the squares
 //   if (blocks.offer(samples, whole)) …             // the stage that transforms, block after block: true asks for the

@@ -38,7 +38,7 @@ Json work_json(const WorkDone& work);
 /// Adds to the counts of the process, from any thread.
 void count_work(WorkKind kind, std::uint64_t more);
 
-/// What the process does from its making on: jobs beside it count too.
+/// The work of the process since its construction; parallel jobs count too.
 class WorkMeter {
  public:
   WorkMeter();

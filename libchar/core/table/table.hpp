@@ -1,5 +1,5 @@
 #pragma once
-// A table as data: made once of a result, shown by every door. Texts stand in it as they came; each
+// A table as data: made once of a result, shown by every door. Texts are stored unchanged; each
 // renderer escapes them for its place (HTML: report/detail/html/html_tables.hpp).
 
 #include <optional>
@@ -32,7 +32,7 @@ struct Cell {
   std::vector<Mark> marks;         ///< behind it, on a page
   std::vector<std::string> notes;  ///< below it, on a page
   std::vector<Cell> lines;         ///< one below the other on a page, in a row elsewhere
-  std::string anchor, address;     ///< part of this page, file beside it that it leads to
+  std::string anchor, address;     ///< part of this page, or file next to it, that it links to
   bool code = false;               ///< a command, a digest
 
   Cell() = default;
@@ -62,7 +62,7 @@ struct Table {
   enum class Kind {
     plain,
     best,
-    aside,    ///< not one of those that are compared
+    aside,    ///< not compared
     derived,  ///< from the others; on a page its last cell takes the rest of the row
     part,     ///< one cell: the head of the rows below it, on a page
   };
@@ -75,7 +75,7 @@ struct Table {
   std::vector<Column> columns;
   std::vector<Row> rows;
   std::string note;            ///< below it
-  bool whole_numbers = false;  ///< intervals and units stand beside their numbers in texts as well
+  bool whole_numbers = false;  ///< intervals and units follow their numbers in texts as well
 
   Table() = default;
   /// Heads and keys between "|". A column with a key and no head is in CSV only.

@@ -13,7 +13,7 @@ namespace libchar {
 std::string printable(std::string_view text, std::size_t limit = 0);
 
 /// A double-quoted YAML scalar that reads back to the same text: quotes, backslashes and what is not
-/// printable are escaped. Bytes that are no UTF-8 cannot stand in YAML: they become \\xHH to read.
+/// printable are escaped. Bytes other than UTF-8 are not allowed in YAML: they become \\xHH to read.
 std::string quoted_yaml(std::string_view text);
 
 /// Capitals A to Z made small, everything else as it is.

@@ -13,7 +13,7 @@ struct TextLook {
   bool colours = false;
 };
 
-/// What a word says of what it stands with: green, yellow, red, pale.
+/// Meaning of a word for its context: green, yellow, red, pale.
 enum class Tint { good, doubtful, bad, absent };
 /// The word in its colour where colours are wanted.
 std::string tinted(std::string_view word, Tint tint, bool colours);
@@ -22,7 +22,7 @@ std::string tinted(std::string_view word, Tint tint, bool colours);
 std::size_t width_of(std::string_view text);
 
 /// The text broken between words into lines of at most `width` characters, `indent` in front of each and counted; a word that is
-/// longer than a line stands alone. No newline at the end.
+/// longer than a line is alone. No newline at the end.
 std::string wrapped(std::string_view text, std::size_t width, std::string_view indent = "");
 
 }  // namespace libchar

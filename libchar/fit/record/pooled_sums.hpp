@@ -12,7 +12,7 @@ namespace libchar::detail {
 
 struct PooledSums {
   std::uint64_t transforms = 0;
-  std::vector<double> power;  ///< sums of c_k² at [k]; none: no transform, or none that was kept
+  std::vector<double> power;  ///< sums of c_k² at [k]; empty: no transform, or not kept
 };
 
 /// One more transform, or as many of its coefficients as are kept.
@@ -20,7 +20,7 @@ void add_squares(std::span<const double> coefficients, PooledSums& sums);
 void join(PooledSums& sums, const PooledSums& later);
 
 void write_state(const PooledSums& sums, StateWriter& to);
-/// Of transforms of which so many coefficients are kept.
+/// Of transforms with this number of kept coefficients.
 PooledSums read_pooled_sums(std::uint64_t kept, StateReader& from);
 
 // Sums of squared coefficients of transforms of means (detail/mean_series.hpp).

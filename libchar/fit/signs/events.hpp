@@ -20,7 +20,7 @@ struct EventOptions {
   bool steps = true, warm_up = true, ramp = true;
 };
 
-/// Jumps between two levels, over and over: random telegraph noise, of which the steps found are a few.
+/// Jumps between two levels, over and over: random telegraph noise; the steps found are some of them.
 struct Telegraph {
   double size = 0, sd = 0;  ///< between the levels
   int jumps = 0;            ///< at least

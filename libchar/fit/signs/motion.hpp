@@ -1,5 +1,5 @@
 #pragma once
-// Did the sensor stand still, and was its noise the same throughout? Stretches of handling, a recording in motion, changes of the
+// Was the sensor at rest, and its noise the same throughout? Stretches of handling, a recording in motion, changes of the
 // noise's strength. Needs no fitted noise. Theory and figures: docs/theory/events.md.
 
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// Wild samples that stand alone: found, left out and counted, in one pass and constant memory. What
+// Isolated wild samples: found, left out and counted, in one pass and constant memory. What
 // is a spike and what is the tail of the noise is decided at the end, from all that was found.
 
 #include <cstdint>
@@ -69,14 +69,14 @@ struct SpikeCount {
   std::uint64_t left_out = 0;  ///< samples of spikes
   std::uint64_t spikes = 0;    ///< beyond six standard deviations and alone
   std::uint64_t shoulder = 0;  ///< between five and six
-  std::uint64_t steps = 0;     ///< jumps that are no run: the level does not come back
+  std::uint64_t steps = 0;     ///< jumps without a return to the level
   std::uint64_t crowded = 0;   ///< beyond six, but among too many others: a loud stretch
   double log_size = 0;         ///< sum of ln(size / 5 sd) over `spikes` and `shoulder`
   CoreSums with, without;      ///< of the record as it is, and without the spikes
 };
 
 enum class SpikeVerdict {
-  none,         ///< nothing stands out alone
+  none,         ///< no isolated outlier
   spikes,       ///< they may be left out
   heavy_tails,  ///< the ends of the noise's own distribution
   too_many,     ///< more than 1 % of the samples

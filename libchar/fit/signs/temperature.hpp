@@ -17,7 +17,7 @@ namespace libchar {
 
 inline constexpr std::size_t kTemperatureOrders = 3;
 
-/// The thermometer beside a sensor: as many samples as the sensor's record, at the same instants. Missing ones (a slower
+/// The thermometer of a sensor: as many samples as the sensor's record, at the same instants. Missing ones (a slower
 /// thermometer has many) are bridged by straight lines.
 struct TemperatureRecord {
   std::string name;
@@ -43,7 +43,7 @@ struct TemperatureEffect {
       false;  ///< a straight drift or a warm-up explains the record nearly as well: the record cannot tell
   Coefficients without;  ///< of the noise when temperature is left in
 
-  /// What is taken out, about its mean: point i stands at sample first + i * per_point.
+  /// The removed effect, about its mean: point i is at sample first + i * per_point.
   std::vector<double> value;
   double first = 0, per_point = 1;
   /// Degrees of freedom that it takes from the transform coefficient k = 1.. at [k-1].

@@ -57,7 +57,7 @@ struct ReplayReport : ReplayFacts {
   struct Alignment : AlignmentResult {
     std::vector<Sensor> sensors, budgeted_sensors;
   };
-  /// The run, or a short stretch of it of which every instant was kept. Tracks have `time_s` in common.
+  /// The run, or a short stretch of it with every instant. Tracks have `time_s` in common.
   struct Stretch : RunStretch {
     std::vector<double> time_s;
     std::string method, sensor_name;  ///< of the run: whose; "": none

@@ -24,7 +24,7 @@ std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result);
 /// On the front of error against a cost: no other method is at least as good in both and better in
 /// one. Bounds are not on it and do not dominate.
 struct ParetoFront {
-  std::vector<bool> time, memory;  ///< one an algorithm
+  std::vector<bool> time, memory;  ///< one per algorithm
 };
 ParetoFront pareto_front(const ReplayResult& result);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A replay as its reports show it, computed once: what stands first, who is on a front, who was
+// A replay as its reports show it, computed once: the first, the fronts, who was
 // skipped and why, which sentences say it, tracks short enough for a page. HTML, JSON, Markdown and
 // terminal only print it.
 
@@ -51,7 +51,7 @@ struct InputView {
   bool has_window_rms = false, has_allan = false;
 };
 
-/// A row of numbers of the run, one a sensor; NaN: none.
+/// A row of numbers of the run, one per sensor; NaN: none.
 struct FinalRow {
   std::string label;  ///< "minque: weights of x", "minque: standard deviations"
   std::vector<double> values;
@@ -67,7 +67,7 @@ struct AlgorithmRemark {
 
 /// Which figures have something to show.
 struct ReplayFigures {
-  bool error_over_time = false;    ///< cost: ns a sample
+  bool error_over_time = false;    ///< cost: ns per sample
   bool error_over_memory = false;  ///< cost: peak bytes
   bool weights = false, variances = false, faults = false, sensors = false;
   bool detection = false;   ///< delays until known faults are found, over the rate of false alarms
@@ -97,7 +97,7 @@ struct ReplayView {
   std::vector<SkippedAlgorithms> skipped;
   std::vector<InputView> inputs;
   RunView run;
-  std::vector<std::optional<double>> noise_sd;  ///< of a sensor's sample, as algorithms were told
+  std::vector<std::optional<double>> noise_sd;  ///< of a sensor's sample, as given to algorithms
   std::vector<FinalRow> final_rows;
   std::vector<AlgorithmRemark> remarks;
   Findings warnings;  ///< of the replay and of its logs

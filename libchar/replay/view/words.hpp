@@ -20,8 +20,8 @@ std::string settings_in_words(const fusion::Settings& settings);
 
 struct AlignmentWords {
   std::vector<std::string> sentences;
-  Table learnt;  ///< a row a sensor: its terms with their standard errors
-  Table budget;  ///< a row a sensor, and one of all: shares of the mean square error
+  Table learnt;  ///< one row per sensor: its terms with their standard errors
+  Table budget;  ///< one row per sensor, and one of all: shares of the mean square error
 };
 
 /// Name of a part, in tables and JSON: offset, gain, cross, delay, jitter, noise.

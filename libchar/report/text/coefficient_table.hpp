@@ -1,6 +1,6 @@
 #pragma once
-// All coefficients of a fleet as a table: a row a recording and channel, a column a property, for spreadsheets (CSV) and for NumPy (.npz,
-// an array a column). A quantity that no device has, has no column.
+// All coefficients of a fleet as a table: one row per recording and channel, one column per property, for spreadsheets (CSV) and for NumPy (.npz,
+// one array per column). A quantity that no device has, has no column.
 
 #include <functional>
 #include <span>

@@ -12,7 +12,7 @@
 
 namespace libchar {
 
-/// channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve: a row a point; bounds and edf empty where there is no interval.
+/// channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve: one row per point; bounds and edf empty where there is no interval.
 /// A channel has an entry in both lists for each of its curves.
 std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves);
 
@@ -24,16 +24,16 @@ Json allan_json(const std::vector<Channel>& channels,
 
 // The spectra of a log as tables and as a document (docs/json.md).
 
-/// frequency_hz and a column a channel.
+/// frequency_hz and one column per channel.
 std::string spectra_csv(const LogSpectra& spectra);
-/// channel,unit,frequency_hz,amplitude,excess,width_hz: a row a line.
+/// channel,unit,frequency_hz,amplitude,excess,width_hz: one row per line.
 std::string lines_csv(const LogSpectra& spectra);
 /// Without the head of a document; lines where they were asked for.
 Json spectra_json(const LogSpectra& spectra, const LogSpectraOptions& options);
 
 // Cornered hats and dynamic deviations as tables and documents (docs/json.md).
 
-/// channel,unit,tau_s,deviation,variance,variance_sd,status,terms: a row a device and averaging time; no deviation where the variance is negative.
+/// channel,unit,tau_s,deviation,variance,variance_sd,status,terms: one row per device and averaging time; no deviation where the variance is negative.
 std::string hat_csv(const LogHat& hat);
 Json hat_json(const LogHat& hat);
 

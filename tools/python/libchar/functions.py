@@ -15,7 +15,7 @@ from .errors import CopyWarning, NumericError, UsageError
 from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, NoiseFit, NoiseTerm, Recording,
                       ReplayResult, Spectrum)
 
-#: A path of a log, a recording that was read, an array (one channel, or a column a channel), or arrays by their names.
+#: A path of a log, a recording that was read, an array (one channel, or one column per channel), or arrays by name.
 Source = Union[str, "os.PathLike[str]", Recording, npt.ArrayLike, Mapping[str, npt.ArrayLike]]
 Names = Optional[Sequence[str]]
 
@@ -162,8 +162,8 @@ def read(path: Union[str, "os.PathLike[str]"], *, channels: Names = None, names:
 def write(path: Union[str, "os.PathLike[str]"], samples: Source, *, rate_hz: Optional[float] = None,
           names: Names = None,
           units: Names = None, overwrite: bool = False) -> None:
-    """Writes samples as a log; the suffix says the format (.csv, .npy, raw with a sidecar). What is written
-    reads back to the same bits."""
+    """Writes samples as a log; the suffix says the format (.csv, .npy, raw with a sidecar). The file reads
+    back to the same bits."""
     _libchar.write_recording(os.fspath(path), _columns(samples, rate_hz, names, units, None), overwrite)
 
 
@@ -173,9 +173,9 @@ def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev
           data: str = "rate",
           nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
           threads: Optional[int] = None) -> list[AllanCurve]:
-    """Deviations of the Allan family, a curve a channel, with chi-square intervals (`sensorchar allan`).
+    """Deviations of the Allan family, one curve per channel, with chi-square intervals (`sensorchar allan`).
 
-    source       path of a log, Recording, array (a column a channel), or a mapping of names to arrays
+    source       path of a log, Recording, array (one column per channel), or mapping of names to arrays
     rate_hz      sampling rate in Hz; not needed for a Recording or a log that has it
     type         adev, oadev, mdev, tdev, hdev, ohdev, totdev, …
     taus         octave, decade, dense, ten, or averaging times in s
@@ -199,7 +199,7 @@ def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[in
         overlap: float = 0.5, window: str = "hann", detrend: str = "constant", sides: str = "one", scaling: str = "psd",
         bins: int = 0, channels: Names = None, names: Names = None, units: Names = None,
         threads: Optional[int] = None) -> list[Spectrum]:
-    """Power spectra by Welch's method, one a channel (`sensorchar psd`).
+    """Power spectra by Welch's method, one per channel (`sensorchar psd`).
 
     segment, segment_s  samples of a segment, or its length in s; None: a quarter of the record
     overlap             of segments, a fraction
@@ -221,7 +221,7 @@ def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None,
         second_opinion: bool = True, still: Optional[str] = None, temperature: Optional[str] = None, data: str = "rate",
         nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
         threads: Optional[int] = None) -> list[NoiseFit]:
-    """Noise coefficients with 95 % intervals, one result a channel (`sensorchar fit`).
+    """Noise coefficients with 95 % intervals, one result per channel (`sensorchar fit`).
 
     terms           offered to the fit from the start: white_noise, bias_instability, random_walk, rate_ramp,
                     quantization

@@ -41,11 +41,11 @@ def _plain_document(document: dict[str, Any]) -> dict[str, Any]:
 
 @dataclasses.dataclass(frozen=True)
 class Recording(_Result):
-    """Named channels on one time base: sample k stands at k / rate_hz seconds after the first."""
+    """Named channels on one time base: sample k is k / rate_hz seconds after the first."""
 
     names: list[str]
     units: list[str]  #: as written in the log, "" where it says nothing
-    samples: list[Array]  #: one array a channel, all of one length; NaN is a missing sample
+    samples: list[Array]  #: one array per channel, all of one length; NaN is a missing sample
     rate_hz: float  #: 0 where it is not known
     file: str = ""
     start_ns: Optional[int] = None  #: stamp of the first sample in ns, where the log has stamps
@@ -71,7 +71,7 @@ class Recording(_Result):
         return np.arange(len(self)) / self.rate_hz
 
     def to_array(self) -> Array:
-        """All channels as one array, a row a sample (a copy)."""
+        """All channels as one array, one row per sample (a copy)."""
         return np.column_stack(self.samples)
 
 

@@ -6,7 +6,7 @@
 // The reference is read_cell, by std::from_chars. In rows of nothing but numbers quick_number
 // stands before it and returns nullptr for what it leaves to read_cell: with std::from_chars in its
 // place, files with decimal commas or with missing cells are read at half the speed
-// (docs/theory/speed.md). Both round to nearest, ties to even, so the bits are the same
+// (docs/dev/speed.md). Both round to nearest, ties to even, so the bits are the same
 // (csv_number_test).
 
 #include <array>

@@ -1,0 +1,164 @@
+"""Holds the English of every text that people read: plain syntax, the field's terms, numbers written for people.
+
+usage: words.py ROOT [--lower] [--list [KEY]]
+Reads README.md, the pages of docs/ and fixtures/, the texts of findings, the documentation of the Python module, the
+string literals of libchar/ and tools/ and the comments of public headers. RULES lists what is refused and what to
+write instead. gates/words.tsv lists where a pattern may still occur, and how often, with a reason: a number there may
+fall, never grow, and --lower lowers it to what is there. --list prints each occurrence (of the keys that begin with
+KEY).
+"""
+import ast
+import collections
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import structure  # noqa: E402
+from gates import cpp, rooms  # noqa: E402
+
+CEILINGS = pathlib.Path(__file__).resolve().parent / "gates/words.tsv"
+COUNTED = (r"(?:algorithm|axis|bin|block|byte|cell|channel|class|column|core|curve|day|decade|device|draw"
+           r"|figure|file|finding|floor|folder|hour|input|instant|interval|kind|line|log|message|method|minute|model"
+           r"|module|number|octave|page|pair|part|point|record|recording|row|run|sample|scene|second|section|sensor"
+           r"|step|target|task|term|test|topic|unit|value|verb|word)")
+# Words that make "a … a" a phrase of another kind.
+BETWEEN = (r"(?!(?:a|about|an|and|as|at|before|behind|but|by|does|for|from|had|has|have|in|inside|into|is|of|on|once|or"
+           r"|over|per|took|share|than|that|to|twice|under|was|when|where|which|with|within|without)\b)[\w/-]+")
+EACH = rf"an?\s+{COUNTED}\b(?!-|\s+(?:or|later|after|apart|before)\b)"
+UNITS = r"(?:ns|µs|ms|s|B|bytes|KiB|MiB|MB|GB|%)"
+# Rule, what is refused, what to write instead, and where it does not apply: "table" or "".
+RULES = [
+    ("per", rf"(?<!\b[Ii]n )(?<!\b[Ff]or )(?<!\bof )\b(?:an?|one)\s+(?:{BETWEEN}\s+)?{BETWEEN}(?<!\w[a-rt-z]s)\s+{EACH}"
+     rf"|\bone\s+{EACH}"
+     rf"|(?:\b(?:two|three|four|five|six|ten)|\d)\s+(?:{BETWEEN}(?<!s)\s+)?(?:[a-z-]+s|{UNITS})\s+{EACH}"
+     rf"|\b{UNITS}\s+{EACH}|\b(?:an?|one)\s+`[^`]*`\s+{EACH}", "per", ""),
+    ("whom", r"\bwhom\b", "a noun", ""),
+    ("is none", r"(?<!\b[Tt]here )\b(?:[Ii]s|[Aa]re|was|were|be)\s+none\b|\bnone\s+(?:that|who)\b",
+     "is not a …, cannot be …", ""),
+    ("is no", r"(?<!\bthere )(?<!\bthere\n)\b(?:is|are|was|were)\s+no\s+(?!longer\b|more\b|less\b|worse\b|better\b"
+     r"|\w+er\s+than\b)", "is not a …, does not have …", ""),
+    ("has not", r"\b(?:has|have|had)\s+not(?=\s*(?:[.,;:)]|$)|\s+(?:the|an?|and|or|but)\b)", "does not have", ""),
+    ("that there is", r"\bthat\s+there\s+(?:is|are|was|were)\b", "that exist, or nothing", ""),
+    ("told", r"\btold\b", "given, specified; distinguished", ""),
+    ("stands", r"\b(?:stands?|stood)\b(?!\s+for\b|-)|\bstanding\b(?!\s+wave)", "is in, listed, written; is constant",
+     ""),
+    ("beside", r"\bbesides?\b", "next to, as well as", ""),
+    ("of which", r"\bof\s+(?:which|whose)\b|\bof\s+those\s+(?:of|that|which|who|in|with)\b", "of, or a new sentence",
+     ""),
+    ("exponent", r"(?<![\w.])\d+(?:\.\d+)?e[-+]?\d+\b", "an SI prefix or a word; digits", "table"),
+    ("digits", r"(?<![\w.^/-])(?<!arXiv )\d+\.\d+(?![\w.]*[\w/-])", "at most four digits", "table"),
+]
+# Of a command's help alone: options are noun phrases.
+QUESTION = ("question", r"[a-z]\?(?=\s*(?:\(default|$))", "an imperative or a noun phrase", "")
+PATTERNS = {name: re.compile(pattern, 0 if name in ("per", "is none") else re.I)
+            for name, pattern, *_ in [*RULES, QUESTION]}
+
+
+def blanks(match):
+    return re.sub(r"[^\n]", " ", match[0])
+
+
+def prose_of_page(text):
+    """Without code, formulas, quotations, pictures and the targets of links, in the same places."""
+    text = re.sub(r"^ *```.*?^ *```|^(?: {4}|\t|>)[^\n]*$|<!--.*?-->|\$\$.*?\$\$", blanks, text,
+                  flags=re.S | re.M)
+    text = re.sub(r"`(?:[^`\n]|\n(?!\n))*`", lambda code: re.sub(r"[^`\n]", "x", code[0]), text)
+    return re.sub(r"\]\([^)]*\)|\$[^$\n]+\$|<[^>\n]*>", blanks, text)
+
+
+def strings(text):
+    """The literals of a source that are a sentence or a phrase; neighbours that the compiler joins are one."""
+    found, end = [], 0
+    for token in cpp.TOKEN.finditer(text):
+        if token[0].startswith(("//", "/*", "'")):
+            continue
+        raw = token[0].startswith("R")
+        value = re.sub(r'^R"[^(]*\(|\)[^)"]*"$', "", token[0]) if raw else token[0][1:-1]
+        if found and not text[end:token.start()].strip():
+            found[-1][1] += value
+        elif not re.search(r"#\s*include\s*$", text[:token.start()].rsplit("\n", 1)[-1]):
+            found.append([text.count("\n", 0, token.start()) + 1, value])
+        end = token.end()
+    return [(line, re.sub(r"\\n", " ", value)) for line, value in found if re.search(r"\w\s+\w", value)]
+
+
+def comments(text):
+    """The comments of a source, lines that follow each other joined."""
+    found, end = [], -1
+    for token in cpp.TOKEN.finditer(text):
+        if not token[0].startswith(("//", "/*")):
+            continue
+        value = re.sub(r"^\s*(?://+[<!]?|/\*+<?|\*+/?)|\*/$", "", token[0], flags=re.M)
+        if found and re.fullmatch(r"\n[ \t]*", text[end:token.start()] if end >= 0 else ""):
+            found[-1][1] += "\n" + value
+        else:
+            found.append([text.count("\n", 0, token.start()) + 1, value])
+        end = token.end()
+    return found
+
+
+def texts(root):
+    """(key of its ceiling, place, first line, text, rules)"""
+    pages = [root / "README.md", *sorted([*(root / "docs").rglob("*.md"), *(root / "fixtures").rglob("*.md")])]
+    for path in pages:
+        name = path.relative_to(root).as_posix()
+        yield name, name, 1, prose_of_page(path.read_text()), RULES
+    for number, line in enumerate((root / "libchar/core/findings.tsv").read_text().splitlines(), 1):
+        if not line.startswith("#"):
+            yield "libchar/core/findings.tsv", "libchar/core/findings.tsv", number, line, RULES
+    for path in sorted((root / "tools/python").rglob("*.py")):
+        name = path.relative_to(root).as_posix()
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield name, name, node.lineno, node.value, RULES
+    tree = structure.Tree(root)
+    for path, text in tree.cpp("libchar", "tools").items():
+        floor = "/".join(path.split("/")[:2]) if path.startswith("libchar/") else "tools"
+        for line, value in strings(text):
+            yield f"strings {floor}", path, line, value, RULES + [QUESTION] * (floor == "tools")
+        if path.endswith(".hpp") and (rooms.is_public(path) or floor == "tools"):
+            for line, value in comments(text):
+                yield f"comments {floor}", path, line, value, RULES
+
+
+def hits(text, rules, page):
+    """(rule, place in the text, what is said, what to write)"""
+    outside = re.sub(r"^[ \t]*\|[^\n]*$", blanks, text, flags=re.M) if page else text
+    for name, _, instead, apart in rules:
+        for hit in PATTERNS[name].finditer(outside if apart == "table" else text):
+            if name != "digits" or len(hit[0].replace(".", "").lstrip("0")) > 4:
+                yield name, hit.start(), re.sub(r"\s+", " ", hit[0]), instead
+
+
+def occurrences(root):
+    for key, path, first, text, rules in texts(root):
+        for name, at, said, instead in hits(text, rules, path.endswith(".md")):
+            line = first + (0 if key.startswith("strings") else text.count("\n", 0, at))
+            yield key, name, f"{path}:{line}", said, instead
+
+
+def main():
+    words = [word for word in sys.argv[1:] if not word.startswith("--")]
+    root = pathlib.Path(words[0] if words else ".")
+    found = list(occurrences(root))
+    if "--list" in sys.argv:
+        wanted = words[1] if len(words) > 1 else ""
+        print("\n".join(f"{place}: {name}: “{said}”: write {instead}" for key, name, place, said, instead in found
+                        if key.startswith(wanted)))
+        return 0
+    counts = collections.defaultdict(structure.Count)
+    for key, name, place, said, instead in found:
+        counts["words", key].add(f"{place} “{said}” ({name}: {instead})")
+    limits = {"words": (0, "patterns of tests/words.py (--list shows them)")}
+    if "--lower" in sys.argv:
+        structure.lower(CEILINGS, counts, limits)
+    ceilings = structure.read_ceilings(CEILINGS)
+    faults = list(structure.faults_of(counts, ceilings, limits))
+    print("\n".join(faults) or f"words: {len(RULES) + 1} rules hold; {len(ceilings)} rows with "
+          f"{sum(number for number, _ in ceilings.values())} older occurrences may only shrink")
+    return bool(faults)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
