@@ -1,9 +1,10 @@
 """Every finding that a source makes has its row in libchar/core/findings.tsv, every row is used, and docs/findings.md
-has the rows. usage: findings.py ROOT [--write]"""
+has the rows. Every row has an input in the matrix (tests/cli/finding_inputs). usage: findings.py ROOT [--write]"""
 import pathlib
 import re
 import sys
 
+sys.dont_write_bytecode = True
 root = pathlib.Path(sys.argv[1])
 NAMED = re.compile(r'"([a-z][a-z0-9_]+)"')
 
@@ -21,10 +22,14 @@ for path in sorted([*(root / "libchar").rglob("*.[ch]pp"), *(root / "tools").rgl
         for code in NAMED.findall(match[1]):
             if code not in codes:
                 faults.append(f"{path.relative_to(root)}: `{code}` has no row in libchar/core/findings.tsv")
-    for match in re.finditer(r'(?:warnings_?|remarks|info_?\.warnings)\.add\(\s*([^,]*?),', text):
+    for match in re.finditer(r'(?:(?:warnings_?|remarks|info_?\.warnings)\.add\(|\badd\(\s*warnings,)\s*([^,]*?),',
+                             text):
         for code in NAMED.findall(match[1]):
             if code not in codes:
                 faults.append(f"{path.relative_to(root)}: `{code}` has no row in libchar/core/findings.tsv")
+sys.path.insert(0, str(root / "tests/cli"))
+import finding_inputs  # noqa: E402
+faults += finding_inputs.unmatched(codes)
 faults += [f"findings.tsv: nobody makes `{code}`" for code in codes if code not in named]
 
 

@@ -1,0 +1,52 @@
+"""Curves, scenes of a simulation, figures: the commands that raise their findings."""
+import math
+import random
+
+from .arrays import SIMULATE, simulate
+from .parts import asked, csv_text, noise
+
+
+def curve(scatter, stated=False):
+    """The fit of an Allan curve of white noise, whose points scatter so much."""
+    def make(folder):
+        draw = random.Random(2)
+        path = folder / "curve.csv"
+        rows = [(2.0**(k / 2), 0.02 / math.sqrt(2.0**(k / 2)) * (1 + scatter * draw.gauss(0, 1))) for k in range(24)]
+        lines = ["tau[s],adev[deg/s]" + (",error" if stated else "")]
+        lines += [f"{t:.6g},{d:.6g}" + (f",{0.01 * d:.6g}" if stated else "") for t, d in rows]
+        path.write_text("\n".join(lines) + "\n")
+        return [["fit", path, "--curve", "allan"]]
+    return make
+
+
+def recorded(folder):
+    """A simulation whose truth is a recording of half its length."""
+    (folder / "motion.csv").write_text(csv_text({"rate[rad/s]": noise(1500)}))
+    path = folder / "simulation.yaml"
+    path.write_text(SIMULATE.replace("kind: sine, amplitude: 2, frequency_hz: 1", "kind: recording, file: motion.csv"))
+    return [["simulate", path, "-o", folder / "simulated.csv", "--force"]]
+
+
+# Fonts without the one that figures are laid out for.
+FONTS = """<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd"><fontconfig>
+<include>/etc/fonts/fonts.conf</include><selectfont>
+<rejectfont><pattern><patelt name="family"><string>Liberation Sans</string></patelt></pattern></rejectfont>
+</selectfont></fontconfig>"""
+
+
+def figure(folder):
+    (folder / "fonts.conf").write_text(FONTS)
+    log = folder / "log.csv"
+    log.write_text(csv_text({"w[deg/s]": noise(500)}))
+    return [["allan", log, "-o", folder / "allan.csv", "--force"],
+            ["plot", folder / "allan.csv", "-o", folder / "figure.pdf", "--force"]]
+
+
+INPUTS = {
+    "figure_font": asked(figure, env={"FONTCONFIG_FILE": "{folder}/fonts.conf"},
+                         optional="this program draws no PDF without that font",
+                         sentence="the font Liberation Sans is not installed"),
+    "recorded_signal_short": asked(recorded),
+    "curve_uncertainty": asked(curve(0.02)),
+    "curve_scatter": asked(curve(0.022, stated=True)),
+}

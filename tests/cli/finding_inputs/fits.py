@@ -1,0 +1,166 @@
+"""Records that raise the findings of the fit, of motion and of the analysis as a whole."""
+import math
+import random
+import subprocess
+
+from . import parts
+from .parts import Input, N, RATE, SD, csv_text, gyro, noise, raw, text
+
+
+def simulated(name, rate=RATE, samples=60000, seed=1, more="", **terms):
+    """A record of a sensor with these terms (white, flicker, walk, resolution), by `simulate`."""
+    def make(folder):
+        model = folder / f"{name}.yaml"
+        model.write_text(f"format: sensor-model\nversion: 1\nchannel: gyro\nunit: deg/s\nrate_hz: {rate}\n"
+                         "density: two-sided\n"
+                         f"white_noise: {terms.get('white', 0)}\nbias_instability: {terms.get('flicker', 0)}\n"
+                         f"random_walk: {terms.get('walk', 0)}\n{more}")
+        log = folder / f"{name}.npy"
+        subprocess.run([parts.PROGRAM, "simulate", model, "--samples", str(samples), "--seed", str(seed), "-o", log,
+                        "--no-truth",
+                        "--no-scene", "--force", "-q"], check=True)
+        return log
+    return make
+
+
+def gauss_markov(n, sigma, tau, seed):
+    draw, keep, last, out = random.Random(seed), math.exp(-1 / RATE / tau), 0.0, []
+    drive = sigma * math.sqrt(1 - keep * keep)
+    last = draw.gauss(0, sigma)
+    for _ in range(n):
+        out.append(last)
+        last = keep * last + draw.gauss(0, drive)
+    return out
+
+
+def with_process(n, sigma, tau):
+    return [a + b for a, b in zip(noise(n), gauss_markov(n, sigma, tau, 2))]
+
+
+def power_law(n, size):
+    """1/f^1.5 of processes whose times are spaced evenly in their logarithm."""
+    out = noise(n)
+    for k in range(11):
+        tau = 0.05 * 3.0**k
+        out = [a + b for a, b in zip(out, gauss_markov(n, size * tau**0.25, tau, k + 2))]
+    return out
+
+
+def high_passed(n=60000):
+    keep, last, out = math.exp(-2 * math.pi * 0.3 / RATE), 0.0, []
+    white = noise(n + 1001)
+    for before, v in zip(white, white[1:]):
+        last = keep * last + v - before
+        out.append(last)
+    return out[1000:]
+
+
+def motion():
+    x = noise(30000)
+    for i in range(8000, 22000):
+        x[i] += 60 * math.sin(i / 9) * math.sin(i / 700)
+    return x
+
+
+def moving():
+    return [v + 60 * math.sin(i / 900) * math.sin(i / 7100) for i, v in enumerate(noise(30000))]
+
+
+def outliers():
+    draw = random.Random(3)
+    return [v + (draw.choice((-6, 6)) * SD if draw.random() < 0.006 else 0) for v in noise(60000)]
+
+
+def laplace():
+    draw = random.Random(3)
+    return [draw.expovariate(1 / SD) * draw.choice((-1, 1)) for _ in range(60000)]
+
+
+def spikes(share, size):
+    draw = random.Random(3)
+    return [v + (size * SD * draw.choice((-1, 1)) if draw.random() < share else 0) for v in noise(30000)]
+
+
+def steps(n, every, size):
+    draw = random.Random(5)
+    levels = [draw.gauss(0, size * SD) for _ in range(n // every + 1)]
+    return [v + levels[i // every] for i, v in enumerate(noise(n))]
+
+
+def louder(n=60000, times=3.0):
+    return [v * (times if i >= n // 2 else 1) for i, v in enumerate(noise(n))]
+
+
+def swelling(n=60000):
+    return [v * (1 + 0.25 * math.sin(2 * math.pi * 3 * i / n)) for i, v in enumerate(noise(n))]
+
+
+def slow_wave(n=60000):
+    return [v + 0.5 * math.sin(0.7 * math.pi * i / n) ** 2 for i, v in enumerate(noise(n))]
+
+
+def band_hump(n=60000):
+    """A broad resonance near 3 Hz."""
+    a, b, y1, y2, out = 2 * 0.995 * math.cos(2 * math.pi * 0.03), -0.995**2, 0.0, 0.0, []
+    for drive, white in zip(noise(n, 0.1, seed=2), noise(n)):
+        y1, y2 = a * y1 + b * y2 + drive, y1
+        out.append(y1 + white)
+    return out
+
+
+def with_temperature():
+    warm = [20 + 5 * math.sin(i / 9000) for i in range(30000)]
+    return {"gyro": ("deg/s", [v + 0.3 * t for v, t in zip(noise(30000), warm)]), "temp": ("degC", warm)}
+
+
+INPUTS = {
+    "event": Input(gyro("event", lambda: [v + (0.6 if i > 12000 else 0) for i, v in enumerate(noise(30000))]),
+                   made_by="fit"),
+    "events_left_in": Input(gyro("steps", lambda: steps(60000, 3000, 4)), made_by="fit"),
+    "motion": Input(gyro("motion", motion), made_by="fit", severity="bad", truth=N),
+    "moves_throughout": Input(gyro("hump", band_hump), made_by="fit"),
+    "heavy_tails": Input(gyro("laplace", laplace), made_by="fit"),
+    "held_values": Input(gyro("held", lambda: [v for v in noise(15000) for _ in range(4)]), made_by="fit"),
+    "high_passed": Input(gyro("coupled", high_passed), made_by="fit"),
+    "outliers_in_n": Input(gyro("outliers", outliers), made_by="fit"),
+    "spikes_left_out": Input(gyro("spikes", lambda: spikes(0.0005, 60)), made_by="fit"),
+    "spikes_kept": Input(gyro("kept", lambda: spikes(0.04, 40)), made_by="fit"),
+    "rail": Input(gyro("rail", lambda: [max(-2.6 * SD, v) for v in noise(30000)]), made_by="fit"),
+    "staircase": Input(gyro("staircase", lambda: [round(v / 0.35) * 0.35 for v in noise(30000)]), made_by="fit"),
+    "digital_misfit": Input(gyro("rounding", lambda: [round((v + 3e-5 * i) / 0.8) * 0.8 for i,
+                                                      v in enumerate(noise(60000, 0.1))]), made_by="fit"),
+    "lines_left_out": Input(gyro("lines", lambda: [v + 0.4 * math.sin(2 * math.pi * 13 * i / RATE) for i,
+                                                   v in enumerate(noise(30000))]), made_by="fit"),
+    "strength_change": Input(gyro("louder", louder), made_by="fit"),
+    "not_stationary": Input(gyro("swelling", swelling), made_by="fit"),
+    "gauss_markov": Input(gyro("process", lambda: with_process(60000, 0.3, 3.0)), made_by="fit"),
+    "gauss_markov_or_terms": Input(gyro("either", lambda: with_process(20000, 0.1, 10.0)), made_by="fit"),
+    "power_law": Input(gyro("law", lambda: power_law(60000, 0.02)), made_by="fit"),
+    "drift": Input(gyro("drift", lambda: [v + 0.001 * i for i, v in enumerate(noise(1000))]), made_by="fit"),
+    "lowest_left_out": Input(gyro("lowest", slow_wave), made_by="fit"),
+    "misfit": Input(gyro("misfit", moving), made_by="fit"),
+    "flicker_or_walk": Input(simulated("slow", white=0.02, flicker=0.02, samples=8000), ("--rate", "100"),
+                             made_by="fit"),
+    "too_short": Input(simulated("short", white=0.02, walk=0.01, samples=4000), ("--rate", "100"), made_by="fit"),
+    "undetermined": Input(simulated("between", white=0.02, flicker=0.02, samples=8000), ("--rate", "100"),
+                          made_by="fit"),
+    "reaches_zero": Input(simulated("zero", white=0.02, flicker=0.01, samples=12000), ("--rate", "100"), made_by="fit"),
+    "contradicted": Input(gyro("contradicted", moving), made_by="fit"),
+    "allan_disagrees": Input(gyro("disagrees", slow_wave), made_by="fit"),
+    "temperature": Input(raw("temperature", with_temperature), made_by="fit", analysis=("--temperature", "temp")),
+    "noise_types": Input(raw("clock", lambda: {"phase": ("s", noise(20000, 1e-9))}, rate=1), made_by="characterize",
+                         analysis=("--data", "phase")),
+    "frequency_mean": Input(raw("frequency", lambda: {"clock": ("Hz", [10e6 + v for v in noise(20000, 1e-3)])},
+                                rate=1), made_by="characterize",
+                            analysis=("--data", "frequency"),
+                            not_in={"psd": "it takes samples for the quantity itself"}),
+    "no_fit": Input(text("no_fit.csv",
+                         lambda: csv_text({"w[deg/s]": noise(3000), "count": [float(i) for i in range(3000)]})),
+                         made_by="characterize"),
+    "not_computed": Input(raw("not_computed", lambda: {"gyro": ("deg/s", noise(3000)), "off": ("deg/s",
+            [math.nan] * 3000)}), made_by="characterize"),
+    "simulation_disagrees": Input(gyro("again", lambda: spikes(0.04, 40)), made_by="characterize",
+                                  analysis=("--verify",),
+                                  not_in=dict.fromkeys(("allan", "psd", "fit"),
+                                                       "only --verify of characterize simulates")),
+}
