@@ -98,16 +98,54 @@ def check_sentence(code, finding):
             faults.append(f"{code}: no sentence: {sentence!r}")
 
 
-class Log:
-    """One input that is a log, and what the verbs say of it."""
+def flags_in(text, finding):
+    """The options that stand beside a finding, each as the terminal prints it."""
+    out = set()
+    for line in text.splitlines():
+        if says(line, finding):
+            out |= {flags_of(flags) for flags in re.findall(r"\((--[^()]*)\)", line)}
+    return sorted(out)
+
+
+class Case:
+    """One input in its folder, and the commands that were run there."""
 
     def __init__(self, code, made, folder):
         self.code, self.made, self.folder = code, made, folder
         self.severity, self.effects = kinds[code]
-        self.log = made.make(folder)
-        self.out = folder / "report"
-        self.finding = None
-        self.ran = set()
+        self.finding, self.ran = None, set()
+
+    def fault_of(self, how, text):
+        """A fault that may be known."""
+        expected = known.text_of(self.code, "remedy", how)
+        if text and not expected:
+            faults.append(f"{self.code}: {how}: {text}")
+        if not text and expected:
+            faults.append(f"{self.code}: {how} holds now: take it out of finding_inputs/known.py")
+
+    def follow(self, line, how="next"):
+        """The next line, and the one after it: each a command that runs, none that was there before."""
+        global remedies
+        seen = set()
+        while line and line not in seen and len(seen) < 4:
+            seen.add(line)
+            if line in self.ran:  # after an earlier verb
+                return None
+            self.ran.add(line)
+            remedies += 1
+            ran = run(self.folder, *shlex.split(line))
+            if ran.returncode != 0:
+                return self.fault_of(how, failure(ran))
+            line = next_line(ran.stdout)
+        return self.fault_of(how, f"a circle: {line}" if line else "")
+
+
+class Log(Case):
+    """One input that is a log, and what the verbs say of it."""
+
+    def __init__(self, code, made, folder):
+        super().__init__(code, made, folder)
+        self.log, self.out = made.make(folder), folder / "report"
 
     def why(self, verb):
         return rules.why_not(self.made, verb, self.severity, self.effects)
@@ -129,11 +167,13 @@ class Log:
         text = run(self.folder, verb, *words)
         said = text.stdout + text.stderr
         cell(self.code, verb, "text", says(said, one or self.finding))
+        for flags in flags_in(said, one or self.finding):
+            self.mends_there(verb, words, flags)
         if verb == "inspect" and self.severity == "note":
             called = any("warning:" in line and says(line, self.finding) for line in said.splitlines())
             self.fault_of("label of inspect", "a note is called a warning" if called else "")
         if verb == "inspect":
-            follow(self, next_line(said), "next of inspect")
+            self.follow(next_line(said), "next of inspect")
 
     def characterize(self):
         words = [self.log, *self.made.options, *self.made.analysis, "-o", self.out, "--force"]
@@ -144,7 +184,8 @@ class Log:
             faults.append(f"{self.code}: characterize: exit {self.said.returncode}: {self.said.stderr.strip()[-200:]}")
             return False
         # What stands beside a sample's quality may have been judged away.
-        self.finding = found([report["findings"], report["summary"]], self.code)
+        self.judged = [report["findings"], report["summary"]]
+        self.finding = found(self.judged, self.code)
         cell(self.code, "characterize", "JSON", self.finding is not None)
         if not self.finding:
             return False
@@ -231,19 +272,25 @@ class Log:
             unknown |= {"--data", "phase", "frequency"}
         return [word for word in self.made.analysis if word not in unknown]
 
+    def mends_there(self, verb, words, flags):
+        """The option that a verb prints, given to the same verb."""
+        global remedies
+        remedies += 1
+        ran = run(self.folder, verb, *words, *flags, "--json")
+        left = found(document(ran), self.code)
+        self.fault_of(f"remedy of {verb}", failure(ran) if ran.returncode != 0 else left["sentence"] if left else "")
+
     def remedies(self):
         """Every option that is printed with the finding, and every next line, run as it stands."""
-        tried = set()
-        for line in (self.said.stdout + self.said.stderr).splitlines():
-            if says(line, self.finding):
-                for flags in re.findall(r"\((?:characterize )?(--[^()]*)\)", line):
-                    tried.add(flags_of(flags))
+        tried = flags_in(self.said.stdout + self.said.stderr, self.finding)
         for help_ in self.finding.get("remedies", []):
-            if help_.get("options") and not any(tried):
+            if help_.get("options") and not tried:
                 self.fault_of("remedy", f"the terminal does not print {help_}")
-        for flags in sorted(tried):
+        for flags in tried:
             self.mends(flags)
-        follow(self, next_line(self.said.stdout))
+        self.follow(next_line(self.said.stdout))
+        for code in self.made.never:
+            self.fault_of(f"beside {code}", "both are said" if found(self.judged, code) else "")
 
     def mends(self, flags):
         global remedies
@@ -265,14 +312,6 @@ class Log:
         if not low - wider <= self.made.truth <= high + wider:
             self.fault_of("number", f"{what}: N {white['value']} [{low}, {high}], true {self.made.truth}")
 
-    def fault_of(self, how, text):
-        """A fault that may be known."""
-        expected = known.text_of(self.code, "remedy", how)
-        if text and not expected:
-            faults.append(f"{self.code}: {how}: {text}")
-        if not text and expected:
-            faults.append(f"{self.code}: {how} holds now: take it out of finding_inputs/known.py")
-
 
 def flags_of(text):
     """The flags in front of the words that go on: "--rate 250 takes the longer steps as gaps"."""
@@ -288,23 +327,6 @@ def flags_of(text):
 def next_line(text):
     lines = [line.split("next: sensorchar ", 1)[1] for line in text.splitlines() if "next: sensorchar " in line]
     return lines[-1] if lines else ""
-
-
-def follow(log, line, how="next"):
-    """The next line, and the one after it: each a command that runs, none that was there before."""
-    global remedies
-    seen = set()
-    while line and line not in seen and len(seen) < 4:
-        seen.add(line)
-        if line in log.ran:  # after an earlier verb
-            return None
-        log.ran.add(line)
-        remedies += 1
-        ran = run(log.folder, *shlex.split(line))
-        if ran.returncode != 0:
-            return log.fault_of(how, f"{line}: exit {ran.returncode}: {ran.stderr.strip()[-200:]}")
-        line = next_line(ran.stdout)
-    log.fault_of(how, f"a circle: {line}" if line else "")
 
 
 def command(code, made, folder):
@@ -328,6 +350,7 @@ def command(code, made, folder):
     if one:
         check_severity(code, one, f"{verb} --json")
         check_sentence(code, one)
+    Case(code, made, folder).follow(next_line(text.stdout))
     if verb == "replay" and one:
         page = (folder / "replay/report.html").read_text()
         cell(code, "page", "HTML", f'title="{code}"' in page or says(page, one))

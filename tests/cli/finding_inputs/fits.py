@@ -135,7 +135,7 @@ INPUTS = {
     "not_stationary": Input(gyro("swelling", swelling), made_by="fit"),
     "gauss_markov": Input(gyro("process", lambda: with_process(60000, 0.3, 3.0)), made_by="fit"),
     "gauss_markov_or_terms": Input(gyro("either", lambda: with_process(20000, 0.1, 10.0)), made_by="fit"),
-    "power_law": Input(gyro("law", lambda: power_law(60000, 0.02)), made_by="fit"),
+    "power_law": Input(gyro("law", lambda: power_law(60000, 0.02)), made_by="fit", never=("misfit",)),
     "drift": Input(gyro("drift", lambda: [v + 0.001 * i for i, v in enumerate(noise(1000))]), made_by="fit"),
     "lowest_left_out": Input(gyro("lowest", slow_wave), made_by="fit"),
     "misfit": Input(gyro("misfit", moving), made_by="fit"),

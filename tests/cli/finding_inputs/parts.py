@@ -22,6 +22,7 @@ class Input:
     truth: float | None = None  # N of the first channel, after the remedy
     analysis: tuple = ()  # of the verbs that analyse
     not_in: dict = dataclasses.field(default_factory=dict)  # verb: why it does not matter to it
+    never: tuple = ()  # codes that contradict it
     env: dict | None = None
     optional: str = ""  # why the command may fail on another machine
     sentence: str = ""  # what is said, of a verb without JSON
