@@ -62,10 +62,6 @@ def motion():
     return x
 
 
-def moving():
-    return [v + 60 * math.sin(i / 900) * math.sin(i / 7100) for i, v in enumerate(noise(30000))]
-
-
 def outliers():
     draw = random.Random(3)
     return [v + (draw.choice((-6, 6)) * SD if draw.random() < 0.006 else 0) for v in noise(60000)]
@@ -108,6 +104,18 @@ def band_hump(n=60000):
     return out
 
 
+def heating(n, period, height, uneven=0.0):
+    """A heating of two states behind a slow wall."""
+    draw, wall, left, on, out = random.Random(346), 0.0, 0.0, False, []
+    for v in noise(n):
+        left -= 1 / RATE
+        if left < 0:
+            on, left = not on, period / 2 + uneven * draw.gauss(0, 1)
+        wall += ((height if on else 0) - wall) / (RATE * period / 10)
+        out.append(v + wall)
+    return out
+
+
 def with_temperature():
     warm = [20 + 5 * math.sin(i / 9000) for i in range(30000)]
     return {"gyro": ("deg/s", [v + 0.3 * t for v, t in zip(noise(30000), warm)]), "temp": ("degC", warm)}
@@ -118,7 +126,7 @@ INPUTS = {
                    made_by="fit"),
     "events_left_in": Input(gyro("steps", lambda: steps(60000, 3000, 4)), made_by="fit"),
     "motion": Input(gyro("motion", motion), made_by="fit", severity="bad", truth=N),
-    "moves_throughout": Input(gyro("hump", band_hump), made_by="fit"),
+    "moves_throughout": Input(gyro("resonance", band_hump), made_by="fit"),
     "heavy_tails": Input(gyro("laplace", laplace), made_by="fit"),
     "held_values": Input(gyro("held", lambda: [v for v in noise(15000) for _ in range(4)]), made_by="fit"),
     "high_passed": Input(gyro("coupled", high_passed), made_by="fit"),
@@ -133,19 +141,21 @@ INPUTS = {
                                                    v in enumerate(noise(30000))]), made_by="fit"),
     "strength_change": Input(gyro("louder", louder), made_by="fit"),
     "not_stationary": Input(gyro("swelling", swelling), made_by="fit"),
+    "cycle": Input(gyro("cycle", lambda: heating(100000, 97, 1.2)), made_by="fit"),
+    "hump": Input(gyro("hump", lambda: heating(60000, 60, 0.5, uneven=4.0)), made_by="fit"),
     "gauss_markov": Input(gyro("process", lambda: with_process(60000, 0.3, 3.0)), made_by="fit"),
     "gauss_markov_or_terms": Input(gyro("either", lambda: with_process(20000, 0.1, 10.0)), made_by="fit"),
     "power_law": Input(gyro("law", lambda: power_law(60000, 0.02)), made_by="fit", never=("misfit",)),
     "drift": Input(gyro("drift", lambda: [v + 0.001 * i for i, v in enumerate(noise(1000))]), made_by="fit"),
     "lowest_left_out": Input(gyro("lowest", slow_wave), made_by="fit"),
-    "misfit": Input(gyro("misfit", moving), made_by="fit"),
+    "misfit": Input(gyro("misfit", band_hump), made_by="fit", analysis=("--no-remedies",)),
     "flicker_or_walk": Input(simulated("slow", white=0.02, flicker=0.02, samples=8000), ("--rate", "100"),
                              made_by="fit"),
     "too_short": Input(simulated("short", white=0.02, walk=0.01, samples=4000), ("--rate", "100"), made_by="fit"),
     "undetermined": Input(simulated("between", white=0.02, flicker=0.02, samples=8000), ("--rate", "100"),
                           made_by="fit"),
     "reaches_zero": Input(simulated("zero", white=0.02, flicker=0.01, samples=12000), ("--rate", "100"), made_by="fit"),
-    "contradicted": Input(gyro("contradicted", moving), made_by="fit"),
+    "contradicted": Input(gyro("contradicted", band_hump), made_by="fit", analysis=("--no-remedies",)),
     "allan_disagrees": Input(gyro("disagrees", slow_wave), made_by="fit"),
     "temperature": Input(raw("temperature", with_temperature), made_by="fit", analysis=("--temperature", "temp")),
     "noise_types": Input(raw("clock", lambda: {"phase": ("s", noise(20000, 1e-9))}, rate=1), made_by="characterize",
