@@ -145,7 +145,7 @@ class Log(Case):
 
     def __init__(self, code, made, folder):
         super().__init__(code, made, folder)
-        self.log, self.out = made.make(folder), folder / "report"
+        self.log, self.out, self.models = made.make(folder), folder / "report", []
 
     def why(self, verb):
         return rules.why_not(self.made, verb, self.severity, self.effects)
@@ -230,7 +230,7 @@ class Log(Case):
     def others(self):
         """Verbs that take what characterize wrote."""
         if self.why("plot"):
-            for verb in ("plot", "compare", "lot", "simulate"):
+            for verb in ("plot", "compare", "lot", "simulate", "replay of its model"):
                 cell(self.code, verb, "text", False, self.why("plot"))
             return
         figure = run(self.folder, "plot", self.out, "-o", "figure.svg", "--force")
@@ -244,9 +244,27 @@ class Log(Case):
             "--force")
         document_of_lot = json.loads((lot / "lot.json").read_text()) if (lot / "lot.json").exists() else {}
         cell(self.code, "lot", "JSON", found(document_of_lot, self.code) is not None)
-        if getattr(self, "models", None):
-            again = run(self.folder, "simulate", *self.models, "--samples", 1000, "-o", "again.csv", "--force")
-            cell(self.code, "simulate", "text", says(again.stdout + again.stderr, self.finding))
+        if not self.models:
+            return
+        again = run(self.folder, "simulate", *self.models, "--samples", 1000, "-o", "again.csv", "--force")
+        cell(self.code, "simulate", "text", says(again.stdout + again.stderr, self.finding))
+        self.weighed()
+
+    def weighed(self):
+        """An array of three sensors of this model: what is known of the model's noise is known of the weights."""
+        model = self.models[0].read_text()
+        unit = re.search(r'^unit: "(.+)"', model, re.M)
+        of_unit = f"[{unit[1]}]" if unit else ""
+        rows = parts.csv_text({name + of_unit: parts.noise(600, seed=i) for i, name in enumerate("abc")})
+        (self.folder / "array.csv").write_text(rows)
+        words = ["replay", "array.csv", "--sensors", "a,b,c", "--algorithms", "inverse-variance,mean", "-o", "weighed",
+                 "--force", "--no-allan", *(word for name in "abc" for word in ("--model", f"{name}={self.models[0]}"))]
+        ran = run(self.folder, *words)
+        if ran.returncode != 0:
+            return faults.append(f"{self.code}: {failure(ran)}")
+        report = json.loads((self.folder / "weighed/report.json").read_text())
+        cell(self.code, "replay of its model", "JSON", found(report, self.code) is not None)
+        return cell(self.code, "replay of its model", "text", says(ran.stdout + ran.stderr, self.finding))
 
     def all_verbs(self):
         if not self.characterize():

@@ -2,6 +2,12 @@
 
 # verb, how, why it fails, codes
 KNOWN = [
+    ("replay of its model", ("JSON", "text"), "replay weighs by models and says nothing of what is known of them",
+     "allan_disagrees backward_timestamp bursts checksum clock_change coarse_resolution dead_band digital_misfit "
+     "dropout duplicate_timestamp events_left_in float_step frequency_mean held_values high_passed hump "
+     "looks_transposed misfit missing_mark missing_samples motion much_saturated not_gravity not_stationary "
+     "outliers_in_n phase_wraps power_law quantization_limited rail rate_change saturated simulation_disagrees "
+     "slow_channel spikes_kept spiky staircase strength_change stuck uneven_sampling wild_stamp"),
     ("allan", ("JSON",), "what is found in samples is a line on stderr, and not in the document",
      "coarse_resolution constant counter dead_band float_step frequency_mean missing_mark much_saturated no_value "
      "not_gravity phase_wraps quantization_limited saturated spiky stuck"),
