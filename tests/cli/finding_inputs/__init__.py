@@ -15,7 +15,6 @@ ALL = {code: made for part in PARTS.values() for code, made in part.items()}
 
 # For which no input can be made, each with its reason.
 WITHOUT = {
-    "unexplained": "a fit that leaves the same doubt (p < 0.001) is called a misfit before",
     "not_converged": "no record is known for which the search stops early",
 }
 

@@ -10,7 +10,7 @@ KNOWN = [
      "slow_channel spikes_kept spiky staircase strength_change stuck uneven_sampling wild_stamp"),
     ("allan", ("JSON",), "what is found in samples is a line on stderr, and not in the document",
      "coarse_resolution constant counter dead_band float_step frequency_mean missing_mark much_saturated no_value "
-     "not_gravity phase_wraps quantization_limited saturated spiky stuck"),
+     "not_gravity phase_wraps quantization_limited saturated stuck"),
     ("allan", ("text",), "gravity is judged where the quality is asked for, which it is not",
      "not_gravity"),
     ("compare", ("JSON", "text"), "compare says nothing of what it compares",
@@ -53,8 +53,8 @@ KNOWN = [
      "rail rate_change saturated simulation_disagrees slow_channel spikes_kept spiky staircase strength_change stuck "
      "uneven_sampling wild_stamp"),
     ("psd", ("JSON", "text"), "psd does not look at the quality of the samples",
-     "coarse_resolution constant counter dead_band float_step frequency_mean missing_mark much_saturated no_value "
-     "not_gravity phase_wraps saturated spiky stuck"),
+     "coarse_resolution constant counter dead_band float_step missing_mark much_saturated no_value not_gravity "
+     "phase_wraps saturated spiky stuck"),
     ("remedy", ("label of inspect",), "inspect calls every finding of a reader a warning",
      "array_length blank_line broken_index carriage_return_line_ends clock_rollover coarse_stamps comment_line "
      "control_in_name definition_changed formula_name gap jitter late_stamp missing_cell missing_value "
@@ -72,9 +72,8 @@ KNOWN = [
     ("remedy", ("remedy of psd",), "--channel NAME as it stands; a rate that leaves no samples together",
      "slow_channel uneven_stamps"),
     ("replay", ("text",), "what an algorithm remarks is in its part of the document and on the page alone",
-     "channel_without_signal dependent_channels duplicate_channels fault_watch_stood_down faults_ambiguous "
-     "faults_not_watched input_repeats looks_ahead negative_variance no_drift noise_bias not_calibrated "
-     "perceptron_fewer_neurons tilt_tuned variances_not_identifiable"),
+     "channel_without_signal fault_watch_stood_down faults_ambiguous faults_not_watched input_repeats not_calibrated "
+     "variances_not_identifiable"),
     ("sentence", ("text",), "a number with an exponent",
      "frequency_mean implausible_magnitude"),
     ("simulate", ("JSON",), "the findings of the scene are not in the document",
