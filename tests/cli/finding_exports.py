@@ -3,6 +3,7 @@ what asks for caution is a comment, once for each channel.
 
 usage: finding_exports.py PROGRAM
 """
+import json
 import math
 import pathlib
 import re
@@ -55,10 +56,14 @@ targets = re.findall(r"^([a-z0-9-]+)  ", run("model", "--list").stdout, re.M)
 expect(len(targets) > 10, f"model --list: {targets}")
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
-    for kind, change, sentence in (("bad", moved, "was moved or shaken in"), ("caution", held, "value is recorded")):
+    for kind, change, code in (("bad", moved, "motion"), ("caution", held, "held_values")):
         log, report = raw(kind, lambda: device(change))(folder), folder / kind
         ran = run("characterize", log, "-o", report)
         expect(ran.returncode == 0, f"{kind}: {ran.stderr}")
+        channels = json.loads((report / "report.json").read_text())["summary"]["channels"]
+        said_of = [one for channel in channels for one in channel["findings"] if one["code"] == code]
+        expect(len(said_of) == len(AXES), f"{kind}: {code} of {len(said_of)} channels")
+        sentence = " ".join(said_of[0]["sentence"].split()[:4])
         for target in targets:
             plain, anyway = run("model", report, "--to", target), run("model", report, "--to", target, "--anyway")
             what = f"{kind}, --to {target}"
@@ -67,7 +72,7 @@ with tempfile.TemporaryDirectory() as name:
             expect(refused == (kind == "bad" and target != "json"), f"{what}: exit {plain.returncode}")
             expect(anyway.returncode == 0, f"{what}, --anyway: exit {anyway.returncode}: {anyway.stderr[-200:]}")
             for channel in AXES:
-                said = re.search(rf"\b{channel}\b[^\n]*{sentence}", anyway.stdout) or target == "json"
+                said = re.search(rf"\b{channel}\b[^\n]*{re.escape(sentence)}", anyway.stdout) or target == "json"
                 expect(said, f"{what}: the file does not say it of {channel}")
             expect(anyway.stdout.count(sentence) >= len(AXES), f"{what}: {anyway.stdout.count(sentence)} sentences")
 
