@@ -1,8 +1,7 @@
 """Arrays of sensors: the commands of replay and fuse that raise the findings of plans, sensors and algorithms."""
 import math
-import random
 
-from .parts import N, RATE, SD, asked, csv_text, noise, text
+from .parts import N, RATE, SD, asked, csv_text, noise
 
 N_ROWS = 6000
 
@@ -14,8 +13,9 @@ def truth(n=N_ROWS):
 def columns(n=N_ROWS, sensors=6, levels=(1, 1.5, 2, 1, 1, 1)):
     """a, b, c… read the truth with their noise; ref is the truth."""
     x = truth(n)
-    out = {name: [v + levels[i] * w for v, w in zip(x, noise(n, seed=10 + i))] for i,
-           name in enumerate("abcdef"[:sensors])}
+    out = {}
+    for i, name in enumerate("abcdef"[:sensors]):
+        out[name] = [v + levels[i] * w for v, w in zip(x, noise(n, seed=10 + i))]
     return out | {"ref": x}
 
 
@@ -61,15 +61,6 @@ sensors:
   - {name: one, model: {unit: rad/s, white_noise: {value: 3.0e-3, unit: rad/s*sqrt(s)}}}
   - {name: two, model: {unit: rad/s, white_noise: {value: 4.0e-3, unit: rad/s*sqrt(s)}}}
 """
-
-
-def simulate(change):
-    """A simulation of two gyroscopes, whose scene `change` makes another."""
-    def make(folder):
-        path = folder / "simulation.yaml"
-        path.write_text(change(SIMULATE))
-        return [["simulate", path, "-o", folder / "simulated.csv", "--force"]]
-    return make
 
 
 def fuse(change=lambda made: made, algorithm="mean", options=(), taught="mean,median", first=lambda made: made,
@@ -126,6 +117,10 @@ def coloured(made):
 
 def at_half_rate(made):
     return csv_text({name: values[::2] for name, values in made.items()}, rate=RATE / 2)
+
+
+def short_lived(made):
+    made["c"][100:] = [None] * (N_ROWS - 100)
 
 
 def louder(names, times):
@@ -192,13 +187,12 @@ def tilt(folder):
              "--no-allan"]]
 
 
+SMOOTHED = ("--set", "virtual-sensor.smoothed=1")
 INPUTS = {
     "frozen_sensor": asked(replay(held("c", 3000, N_ROWS))),
     "constant_sensor": asked(replay(set_to("b", lambda made: [0.5] * N_ROWS), sensors="a,b")),
     "copied_sensor": asked(replay(set_to("c", lambda made: list(made["a"])))),
-    "sensor_without_samples": asked(replay(set_to("c", lambda made: [v if i < 100 else None for i,
-                                                                     v in enumerate(made["c"])]),
-                                           ("--learning", "0..30"))),
+    "sensor_without_samples": asked(replay(short_lived, ("--learning", "0..30"))),
     "reference_is_a_sensor": asked(scene("sensors: [a, b, c]\nreference: {channels: [a, ref], mean: true}\n")),
     "window_beyond_end": asked(replay(options=("--learning", "0..30", "--evaluation", "30..90"))),
     "learning_in_evaluation": asked(replay(options=("--learning", "0..30", "--evaluation", "20..60"))),
@@ -231,8 +225,7 @@ INPUTS = {
     "faults_not_kept": asked(restless),
     "input_repeats": asked(scene(modelled(""), "kalman-takens", change=periodic)),
     "tilt_tuned": asked(tilt),
-    "looks_ahead": asked(scene(modelled(f", random_walk: {{value: {N}}}"), "virtual-sensor", ("--set",
-            "virtual-sensor.smoothed=1"))),
+    "looks_ahead": asked(scene(modelled(f", random_walk: {{value: {N}}}"), "virtual-sensor", SMOOTHED)),
     "no_drift": asked(scene(modelled(""), "virtual-sensor")),
     "stamp_not_rising": asked(resampled),
     "case_clash": asked(named("A", "c")),

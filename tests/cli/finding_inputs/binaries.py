@@ -2,7 +2,7 @@
 import json
 import struct
 
-from .parts import Input, gyro, noise, npy, raw, text
+from .parts import Input, noise, npy
 
 
 def swapped(folder):

@@ -2,7 +2,7 @@
 import math
 import random
 
-from .arrays import SIMULATE, simulate
+from .arrays import SIMULATE
 from .parts import asked, csv_text, noise
 
 

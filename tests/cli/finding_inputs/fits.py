@@ -121,56 +121,72 @@ def with_temperature():
     return {"gyro": ("deg/s", [v + 0.3 * t for v, t in zip(noise(30000), warm)]), "temp": ("degC", warm)}
 
 
+def with_line(n=30000):
+    return [v + 0.4 * math.sin(2 * math.pi * 13 * i / RATE) for i, v in enumerate(noise(n))]
+
+
+def fitted(name, values, **more):
+    """A record of one gyroscope, of which the fit finds something."""
+    return Input(gyro(name, values), made_by="fit", **more)
+
+
+def fitted_model(name, samples, **terms):
+    """The same of a simulated sensor."""
+    return Input(simulated(name, samples=samples, **terms), ("--rate", "100"), made_by="fit")
+
+
+def counting():
+    return csv_text({"w[deg/s]": noise(3000), "count": [float(i) for i in range(3000)]})
+
+
+def switched_off():
+    return {"gyro": ("deg/s", noise(3000)), "off": ("deg/s", [math.nan] * 3000)}
+
+
+def clock_of(unit, mean, sd):
+    return lambda: {"clock": (unit, [mean + v for v in noise(20000, sd)])}
+
+
+ONLY_VERIFY = dict.fromkeys(("allan", "psd", "fit"), "only --verify of characterize simulates")
 INPUTS = {
-    "event": Input(gyro("event", lambda: [v + (0.6 if i > 12000 else 0) for i, v in enumerate(noise(30000))]),
-                   made_by="fit"),
-    "events_left_in": Input(gyro("steps", lambda: steps(60000, 3000, 4)), made_by="fit"),
-    "motion": Input(gyro("motion", motion), made_by="fit", severity="bad", truth=N),
-    "moves_throughout": Input(gyro("resonance", band_hump), made_by="fit"),
-    "heavy_tails": Input(gyro("laplace", laplace), made_by="fit"),
-    "held_values": Input(gyro("held", lambda: [v for v in noise(15000) for _ in range(4)]), made_by="fit"),
-    "high_passed": Input(gyro("coupled", high_passed), made_by="fit"),
-    "outliers_in_n": Input(gyro("outliers", outliers), made_by="fit"),
-    "spikes_left_out": Input(gyro("spikes", lambda: spikes(0.0005, 60)), made_by="fit"),
-    "spikes_kept": Input(gyro("kept", lambda: spikes(0.04, 40)), made_by="fit"),
-    "rail": Input(gyro("rail", lambda: [max(-2.6 * SD, v) for v in noise(30000)]), made_by="fit"),
-    "staircase": Input(gyro("staircase", lambda: [round(v / 0.35) * 0.35 for v in noise(30000)]), made_by="fit"),
-    "digital_misfit": Input(gyro("rounding", lambda: [round((v + 3e-5 * i) / 0.8) * 0.8 for i,
-                                                      v in enumerate(noise(60000, 0.1))]), made_by="fit"),
-    "lines_left_out": Input(gyro("lines", lambda: [v + 0.4 * math.sin(2 * math.pi * 13 * i / RATE) for i,
-                                                   v in enumerate(noise(30000))]), made_by="fit"),
-    "strength_change": Input(gyro("louder", louder), made_by="fit"),
-    "not_stationary": Input(gyro("swelling", swelling), made_by="fit"),
-    "cycle": Input(gyro("cycle", lambda: heating(100000, 97, 1.2)), made_by="fit"),
-    "hump": Input(gyro("hump", lambda: heating(60000, 60, 0.5, uneven=4.0)), made_by="fit"),
-    "gauss_markov": Input(gyro("process", lambda: with_process(60000, 0.3, 3.0)), made_by="fit"),
-    "gauss_markov_or_terms": Input(gyro("either", lambda: with_process(20000, 0.1, 10.0)), made_by="fit"),
-    "power_law": Input(gyro("law", lambda: power_law(60000, 0.02)), made_by="fit", never=("misfit",)),
-    "drift": Input(gyro("drift", lambda: [v + 0.001 * i for i, v in enumerate(noise(1000))]), made_by="fit"),
-    "lowest_left_out": Input(gyro("lowest", slow_wave), made_by="fit"),
-    "misfit": Input(gyro("misfit", band_hump), made_by="fit", analysis=("--no-remedies",)),
-    "flicker_or_walk": Input(simulated("slow", white=0.02, flicker=0.02, samples=8000), ("--rate", "100"),
-                             made_by="fit"),
-    "too_short": Input(simulated("short", white=0.02, walk=0.01, samples=4000), ("--rate", "100"), made_by="fit"),
-    "undetermined": Input(simulated("between", white=0.02, flicker=0.02, samples=8000), ("--rate", "100"),
-                          made_by="fit"),
-    "reaches_zero": Input(simulated("zero", white=0.02, flicker=0.01, samples=12000), ("--rate", "100"), made_by="fit"),
-    "contradicted": Input(gyro("contradicted", band_hump), made_by="fit", analysis=("--no-remedies",)),
-    "allan_disagrees": Input(gyro("disagrees", slow_wave), made_by="fit"),
+    "event": fitted("event", lambda: [v + (0.6 if i > 12000 else 0) for i, v in enumerate(noise(30000))]),
+    "events_left_in": fitted("steps", lambda: steps(60000, 3000, 4)),
+    "motion": fitted("motion", motion, truth=N),
+    "moves_throughout": fitted("resonance", band_hump),
+    "heavy_tails": fitted("laplace", laplace),
+    "held_values": fitted("held", lambda: [v for v in noise(15000) for _ in range(4)]),
+    "high_passed": fitted("coupled", high_passed),
+    "outliers_in_n": fitted("outliers", outliers),
+    "spikes_left_out": fitted("spikes", lambda: spikes(0.0005, 60)),
+    "spikes_kept": fitted("kept", lambda: spikes(0.04, 40)),
+    "rail": fitted("rail", lambda: [max(-2.6 * SD, v) for v in noise(30000)]),
+    "staircase": fitted("staircase", lambda: [round(v / 0.35) * 0.35 for v in noise(30000)]),
+    "digital_misfit": fitted("rounding", lambda: [float(round(v)) for v in noise(20000, 0.3)]),
+    "lines_left_out": fitted("lines", with_line),
+    "strength_change": fitted("louder", louder),
+    "not_stationary": fitted("swelling", swelling),
+    "cycle": fitted("cycle", lambda: heating(100000, 97, 1.2)),
+    "hump": fitted("hump", lambda: heating(60000, 60, 0.5, uneven=4.0)),
+    "gauss_markov": fitted("process", lambda: with_process(60000, 0.3, 3.0)),
+    "gauss_markov_or_terms": fitted("either", lambda: with_process(20000, 0.1, 10.0)),
+    "power_law": fitted("law", lambda: power_law(60000, 0.02), never=("misfit",)),
+    "drift": fitted("drift", lambda: [v + 0.001 * i for i, v in enumerate(noise(1000))]),
+    "lowest_left_out": fitted("lowest", slow_wave),
+    "misfit": fitted("misfit", band_hump, analysis=("--no-remedies",)),
+    "contradicted": fitted("contradicted", band_hump, analysis=("--no-remedies",)),
+    "allan_disagrees": fitted("disagrees", slow_wave),
+    "flicker_or_walk": fitted_model("slow", 8000, white=0.02, flicker=0.02),
+    "too_short": fitted_model("short", 4000, white=0.02, walk=0.01),
+    "undetermined": fitted_model("between", 8000, white=0.02, flicker=0.02),
+    "reaches_zero": fitted_model("zero", 12000, white=0.02, flicker=0.01),
     "temperature": Input(raw("temperature", with_temperature), made_by="fit", analysis=("--temperature", "temp")),
-    "noise_types": Input(raw("clock", lambda: {"phase": ("s", noise(20000, 1e-9))}, rate=1), made_by="characterize",
+    "noise_types": Input(raw("clock", clock_of("s", 0, 1e-9), rate=1), made_by="characterize",
                          analysis=("--data", "phase")),
-    "frequency_mean": Input(raw("frequency", lambda: {"clock": ("Hz", [10e6 + v for v in noise(20000, 1e-3)])},
-                                rate=1), made_by="characterize",
+    "frequency_mean": Input(raw("frequency", clock_of("Hz", 10e6, 1e-3), rate=1), made_by="characterize",
                             analysis=("--data", "frequency"),
                             not_in={"psd": "it takes samples for the quantity itself"}),
-    "no_fit": Input(text("no_fit.csv",
-                         lambda: csv_text({"w[deg/s]": noise(3000), "count": [float(i) for i in range(3000)]})),
-                         made_by="characterize"),
-    "not_computed": Input(raw("not_computed", lambda: {"gyro": ("deg/s", noise(3000)), "off": ("deg/s",
-            [math.nan] * 3000)}), made_by="characterize"),
+    "no_fit": Input(text("no_fit.csv", counting), made_by="characterize"),
+    "not_computed": Input(raw("not_computed", switched_off), made_by="characterize"),
     "simulation_disagrees": Input(gyro("again", lambda: spikes(0.04, 40)), made_by="characterize",
-                                  analysis=("--verify",),
-                                  not_in=dict.fromkeys(("allan", "psd", "fit"),
-                                                       "only --verify of characterize simulates")),
+                                  analysis=("--verify",), not_in=ONLY_VERIFY),
 }

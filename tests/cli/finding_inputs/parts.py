@@ -18,7 +18,6 @@ class Input:
     make: Callable
     options: tuple = ()  # of every verb that reads the log
     made_by: str = "reading"  # reading, samples, fit, characterize, command
-    severity: str = ""  # where its maker chooses another than the table's
     truth: float | None = None  # N of the first channel, after the remedy
     analysis: tuple = ()  # of the verbs that analyse
     not_in: dict = dataclasses.field(default_factory=dict)  # verb: why it does not matter to it

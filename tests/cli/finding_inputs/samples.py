@@ -1,9 +1,7 @@
 """Records whose samples raise the findings of their quality."""
 import math
-import random
-import struct
 
-from .parts import Input, N, RATE, SD, csv_text, gyro, noise, npy, raw, text
+from .parts import Input, N, RATE, SD, csv_text, gyro, noise, raw, text
 
 
 def marks():
@@ -50,6 +48,10 @@ def bumped():
     return x
 
 
+def with_holes():
+    return [math.nan if i % 40 == 0 else v for i, v in enumerate(noise(30000))]
+
+
 INPUTS = {
     "counter": Input(text("counter.csv",
                           lambda: csv_text({"w[deg/s]": noise(3000), "count": [float(i) for i in range(3000)]})),
@@ -63,7 +65,7 @@ INPUTS = {
     "float_step": Input(raw("floats", lambda: {"gyro": ("deg/s", [1e7 + v for v in noise(60000, 1.9)])}, kind="f"),
                         made_by="samples"),
     "missing_mark": Input(gyro("marks", marks), made_by="samples", truth=N),
-    "saturated": Input(gyro("saturated", lambda: bumped()), made_by="samples"),
+    "saturated": Input(gyro("saturated", bumped), made_by="samples"),
     "much_saturated": Input(gyro("cut", lambda: clipped(1.5)), made_by="samples"),
     "dead_band": Input(gyro("dead", lambda: [0.0 if abs(v) < 1.5 * SD else v for v in noise(30000)]),
                        made_by="samples"),
@@ -74,9 +76,7 @@ INPUTS = {
                       made_by="samples"),
     "spiky": Input(gyro("spiky", spiky), made_by="samples", analysis=("--no-remedies",),
                    not_in={"allan": "it takes the remedies, and says what was done"}),
-    "not_gravity": Input(raw("gravity", gravity), made_by="samples", truth=N / 1),
-    "missing_samples": Input(gyro("missing", lambda: [math.nan if i % 40 == 0 else v for i,
-                                                      v in enumerate(noise(30000))]), made_by="characterize",
-                             not_in=dict.fromkeys(("allan", "psd"),
-                                                  "terms that touch a missing sample are left out")),
+    "not_gravity": Input(raw("gravity", gravity), made_by="samples", truth=N),
+    "missing_samples": Input(gyro("missing", with_holes), made_by="characterize",
+                             not_in=dict.fromkeys(("allan", "psd"), "terms that touch a missing sample are left out")),
 }
