@@ -30,18 +30,28 @@ KNOWN = [
      "looks_transposed"),
     ("remedy", ("next of inspect",), "the next line does not run",
      "looks_transposed phase_wraps"),
-    ("remedy", ("remedy of inspect", "remedy of fit", "remedy"), "--channel NAME is printed as it stands",
+    ("remedy", ("remedy",), "the document has an option that the terminal does not print",
      "slow_channel"),
-    ("remedy", ("remedy of psd",), "--channel NAME as it stands; a rate that leaves no samples together",
-     "slow_channel uneven_stamps"),
+    ("remedy", ("remedy of psd",), "a rate that leaves no samples together",
+     "uneven_stamps"),
     ("sentence", ("text",), "a number with an exponent",
      "frequency_mean implausible_magnitude"),
 ]
 
 
+ASKED = set()
+
+
 def text_of(code, verb, how):
     """Why this cell fails; "" where it has to hold."""
+    ASKED.add((code, verb, how))
     for verb_, how_, text, codes in KNOWN:
         if verb == verb_ and how in how_ and code in codes.split():
             return text
     return ""
+
+
+def stale(done):
+    """Cells of these codes that stand here and that nobody asked for."""
+    listed = {(code, verb, how) for verb, hows, _, codes in KNOWN for how in hows for code in codes.split()}
+    return sorted(cell for cell in listed - ASKED if cell[0] in done)
