@@ -153,11 +153,23 @@ std::string sentence_of(const Finding& one) {
   return line;
 }
 
+std::string detail::help_of(const Finding& one) {
+  std::string out;
+  for (const Finding::Help& help : one.help)
+    if (!help.options.empty()) {
+      std::string what = help.sentence;
+      if (what.ends_with('.')) what.pop_back();
+      out += (one.sentence.ends_with('.') || !out.empty() ? " " : ". ") +
+             printable(what + settings_text(help)) + ".";
+    }
+  return out;
+}
+
 std::string one_line(const Finding& one, std::string_view file, bool colours) {
   const bool note = one.severity == Severity::note;
   return printable(file) + ": " +
          tinted(note ? "note" : "warning", note ? Tint::absent : Tint::doubtful, colours) + ": " +
-         sentence_of(one);
+         sentence_of(one) + detail::help_of(one);
 }
 
 Finding& Findings::entry(std::string_view code, std::string_view sentence) {

@@ -117,6 +117,10 @@ std::string findings_text(std::span<const Finding> findings,
                           bool colours = false);
 /// "3 × SENTENCE (first: line 412, line 413, line 9001)", control characters escaped.
 std::string sentence_of(const Finding& finding);
+namespace detail {
+/// " Read it alone (`channels` temp).": what options do about it; "" where none does anything.
+std::string help_of(const Finding& finding);
+}  // namespace detail
 /// "FILE: warning: 3 × SENTENCE (first: line 412, line 413, line 9001)", control characters escaped.
 std::string one_line(const Finding& finding, std::string_view file, bool colours = false);
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -15,6 +16,7 @@
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/lot_statistics.hpp"
 
@@ -267,6 +269,37 @@ std::vector<std::string> warnings_note(std::span<const DeviceRecord> records,
                       first->warnings[0])};
 }
 
+/// One for each code, with the devices that have it, the worst first.
+std::vector<Finding> known_of(std::span<const DeviceRecord> records,
+                              std::span<const std::size_t> order) {
+  std::map<std::string, std::pair<Finding, std::vector<std::string>>> kinds;
+  for (const std::size_t r : order)
+    for (const RecordedChannel& channel : records[r].channels)
+      for (const Finding& one : channel.findings) {
+        if (one.severity == Severity::note) continue;
+        auto& [kind, devices] =
+            kinds.try_emplace(one.code, one, std::vector<std::string>{}).first->second;
+        kind.severity = std::max(kind.severity, one.severity);
+        if (devices.empty() || devices.back() != records[r].device)
+          devices.push_back(records[r].device);
+      }
+  std::vector<Finding> out;
+  for (auto& [code, found] : kinds) {
+    auto& [kind, devices] = found;
+    const FindingKind* row = find_finding_kind(code);
+    kind.count = devices.size();
+    kind.sentence = fmt::format("{} of {} ({})",
+                                row != nullptr ? row->title : std::string_view(code),
+                                plural(devices.size(), "device"),
+                                first_names(devices));
+    kind.phrase = kind.sentence;
+    kind.where = {};
+    kind.help.clear();
+    out.push_back(std::move(kind));
+  }
+  return worst_first(std::move(out));
+}
+
 }  // namespace
 
 FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions& options) {
@@ -293,6 +326,7 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
   for (std::string& note : unlike_records(records, fleet.sorted, fleet.groups))
     out.notes.push_back(std::move(note));
   for (std::string& note : warnings_note(records, out.order)) out.notes.push_back(std::move(note));
+  out.findings = known_of(records, out.order);
   out.verdict = fleet_verdict(out);
   return out;
 }

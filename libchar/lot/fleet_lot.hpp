@@ -180,6 +180,8 @@ struct FleetLot {
   std::vector<bool> stands_out, fails;             ///< one per record, that of its device
   std::vector<std::string> notes;                  ///< what was not compared, and why
   std::string verdict;                             ///< a paragraph
+  /// What is known of their channels, one for each code: how many devices, and which; no notes.
+  std::vector<Finding> findings;
 };
 
 /// Of a record, that of its device.

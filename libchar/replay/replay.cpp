@@ -479,6 +479,11 @@ void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
           "copied_sensor",
           "sensors that repeat another one, sample by sample: one sensor counted twice",
           sensor.name + " repeats " + sensor.copy_of);
+  for (const SceneSensor& sensor : scene_.sensors)
+    for (const Finding& one : sensor.model ? sensor.model->findings : std::vector<Finding>{})
+      if (one.severity != Severity::note)
+        out.warnings.add(one.code, "the model of a sensor: " + as_part(one.sentence), sensor.name)
+            .severity = one.severity;
 }
 
 // One that ran, and by which of its errors it is compared with others; empty: by none.

@@ -32,6 +32,7 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"compare_replays", "--unlike"},
                                {"correlation_s", "--correlation-time"},
                                {"curve", "--curve"},
+                               {"data", "--data"},
                                {"date_order", "--date-order"},
                                {"decimal", "--decimal"},
                                {"delimiter", "--delimiter"},
@@ -99,7 +100,8 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"y_range", "--y-range"}};
 
 /// What mends a record before its noise is fitted: other verbs name the one that does it.
-constexpr std::string_view kOfAnalysis[] = {"--frozen", "--still", "--temperature", "--unwrap"};
+constexpr std::string_view kOfAnalysis[] = {
+    "--data", "--frozen", "--still", "--temperature", "--unwrap"};
 
 const std::set<std::string>* g_of_verb = nullptr;  // of the verb that runs
 
@@ -120,7 +122,8 @@ std::string replaced(const std::string& message, std::vector<std::string_view>& 
     text += message.substr(done, open - done);
     if (g_of_verb != nullptr && !g_of_verb->contains(std::string(row->flag)) &&
         std::find(std::begin(kOfAnalysis), std::end(kOfAnalysis), row->flag) !=
-            std::end(kOfAnalysis))
+            std::end(kOfAnalysis) &&
+        text.rfind("characterize ") == std::string::npos)
       text += "characterize ";
     text += row->flag;
     used.push_back(row->flag);

@@ -107,7 +107,8 @@ std::string alike_flag(const Characterization& result, const std::string& unit) 
     if (c.channel.unit != unit) continue;
     if (++alike <= detail::kMostCurves) names += (alike == 1 ? "" : ",") + c.channel.name;
   }
-  return alike == result.channels.size() ? "" : " -c " + shell_word(names);
+  const bool all = alike == result.channels.size() && alike <= detail::kMostCurves;
+  return all ? "" : " -c " + shell_word(names);
 }
 
 }  // namespace

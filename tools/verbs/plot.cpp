@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "libchar/characterize/compare/reported_findings.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
@@ -117,7 +118,9 @@ void report_drawn(Session& session,
   std::vector<Finding> drawn;
   for (Finding one : source.findings) {
     const auto fits = [&](const std::string& pattern) { return matches(pattern, one.subject); };
-    if (!channels.empty() && std::none_of(channels.begin(), channels.end(), fits)) continue;
+    if (one.subject != detail::kOfRecording && !channels.empty() &&
+        std::none_of(channels.begin(), channels.end(), fits))
+      continue;
     one.sentence = one.subject + ": " + one.sentence;
     drawn.push_back(std::move(one));
   }

@@ -15,6 +15,7 @@
 #include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/noise_fit.hpp"
@@ -385,12 +386,12 @@ void Finish::doubt_frequency(ChannelResult& result) const {
   if (std::abs(off) <= kMostOff) return;
   result.findings.push_back(finding(
       "frequency_mean",
-      nominal == 0 ? fmt::format("The mean is {:.6g}: without `nominal_frequency` values are taken "
+      nominal == 0 ? fmt::format("The mean is {}: without `nominal_frequency` values are taken "
                                  "for fractional frequencies, which are small.",
-                                 found_.mean)
-                   : fmt::format("The mean, {:.6g}, is far from the nominal frequency of {:.6g}.",
-                                 found_.mean,
-                                 nominal)));
+                                 number_text(found_.mean, 6))
+                   : fmt::format("The mean, {}, is far from the nominal frequency of {}.",
+                                 number_text(found_.mean, 6),
+                                 number_text(nominal, 6))));
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.

@@ -24,10 +24,17 @@ namespace {
 constexpr std::size_t kMostFigures = 150;
 constexpr std::size_t kFailedOnPage = 100;
 
+std::vector<std::string> known_words(const FleetLot& lot) {
+  std::vector<std::string> out;
+  for (const Finding& one : lot.findings)
+    out.push_back(std::string(name_of(one.severity)) + ": " + one.sentence);
+  return out;
+}
+
 std::string facts(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   return "<p class=\"verdict\">" + html_text(lot.verdict) + "</p>\n" +
-         bullet_list(lot.notes, "cautions");
+         bullet_list(lot.notes, "cautions") + bullet_list(known_words(lot), "cautions");
 }
 
 std::string recordings_part(const FleetReport& report,
@@ -323,7 +330,7 @@ std::string fleet_text(const FleetReport& report, std::size_t width, std::size_t
   const FleetLot& lot = *report.lot;
   std::string out = printable(lot.verdict) + "\n";
   for (const std::string& note : lot.notes) out += "  " + printable(note) + "\n";
-  out += failed_text(report);
+  out += findings_text(lot.findings) + failed_text(report);
   for (const Table& table : {all_channels(report), quantities_table(lot)})
     if (!table.rows.empty()) out += "\n" + terminal_table(table, {width});
   if (lot.worst.empty()) return out;

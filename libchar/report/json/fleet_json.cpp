@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/report/detail/html/pieces.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
@@ -210,6 +211,11 @@ Json quantity_json(const FleetReport& report, const QuantityLot& q) {
 Json fleet_json(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   Json out = many_head("lot", report.recordings, report.command);
+  for (const Finding& one : lot.findings) {
+    Json row = document_of(finding_fields(), one);
+    row["file"] = json_text(report.name);
+    out["findings"].push_back(std::move(row));
+  }
   out["name"] = json_text(report.name);
   out["verdict"] = json_text(lot.verdict);
   out["notes"] = texts_json(lot.notes);

@@ -119,7 +119,7 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
   for (const Finding& warning : info.warnings.list())
     text += fmt::format("  {}: {}\n",
                         warning.severity == Severity::note ? "note" : "warning",
-                        sentence_of(warning));
+                        sentence_of(warning) + detail::help_of(warning));
   text += terminal_table(is_listing(info) ? topic_table(info) : channel_table(inspection), {width});
   return text + remarks(inspection);
 }

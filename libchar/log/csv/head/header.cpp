@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -208,7 +209,33 @@ void do_without_names(Study& study) {
         place_name(first.number, 1));
 }
 
+/// Sensor Logger writes a file for each sensor, columns z, y, x without units; the file's name says which.
+void find_units_of_phone(Study& study) {
+  static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+      {"accelerometer", "m/s^2"},
+      {"totalacceleration", "m/s^2"},
+      {"gravity", "m/s^2"},
+      {"gyroscope", "rad/s"},
+      {"magnetometer", "uT"}};
+  const auto& columns = study.dialect.columns;
+  const auto has_column = [&](std::string_view text) {
+    return std::any_of(
+        columns.begin(), columns.end(), [&](const Column& column) { return column.text == text; });
+  };
+  if (!has_column("seconds_elapsed") || !has_column("x") || !has_column("y") || !has_column("z"))
+    return;
+  const std::string stem = ascii_lower(std::filesystem::path(study.info.file).stem().string());
+  for (const auto& [name, unit] : kUnits) {
+    if (stem != name) continue;
+    for (Column& column : study.dialect.columns)
+      if (column.text == "x" || column.text == "y" || column.text == "z") column.unit_below = unit;
+    study.info.guesses.push_back(fmt::format(
+        "units: {}, those of Sensor Logger in a file of this name (`units` says otherwise)", unit));
+  }
+}
+
 void find_other_units(Study& study) {
+  find_units_of_phone(study);
   if (find_cell_units(study)) study.info.dialect.emplace_back("units behind the numbers");
   // Gyroflow's .gcsv holds counts: gx, gy, gz and ax, ay, az.
   for (const Line& line : study.preamble)
