@@ -14,6 +14,7 @@
 #include "heap_meter.hpp"
 #include "help/flag_names.hpp"
 #include "help/marked_line.hpp"
+#include "libchar/core/file/folder_lock.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
@@ -190,6 +191,15 @@ libchar::Problem with_curve_hint(const Session& session, libchar::Problem proble
   return problem;
 }
 
+/// Where results of two runs could mix: folders on file systems that have no locks.
+void say_unlocked(Session& session) {
+  for (const std::string& folder : libchar::detail::folders_without_locks())
+    session.terminal.note(
+        fmt::format("note: {}: this file system has no locks. Let no other run write there at the "
+                    "same time. Temporary files that killed runs left there stay.",
+                    libchar::printable(folder)));
+}
+
 int said_exit_code(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
     work_is_done();
@@ -206,6 +216,7 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
   try {
     work();
     work_is_done();
+    say_unlocked(session);
     refuse_strict(session);
     return 0;
   } catch (const Error& error) {

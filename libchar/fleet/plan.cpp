@@ -18,7 +18,9 @@
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/document/schema.hpp"
+#include "libchar/core/file/file_owner.hpp"
 #include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/folder_lock.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
@@ -415,7 +417,7 @@ class PlanReader {
 /// thousands of files takes longer than all else of planning, and whoever reads a task sees whether
 /// it is torn.
 void write_task(const fs::path& file, const std::string& text) {
-  const std::string temporary = fmt::format("{}{}{}-0", file.string(), kTemporaryMark, ::getpid());
+  const std::string temporary = detail::temporary_name(file.string(), 0);
   std::ofstream out(temporary, std::ios::binary);
   out << text;
   out.close();
@@ -518,6 +520,8 @@ std::size_t results_of_others(const FleetPlan& plan, const fs::path& folder) {
 void write_plan(const FleetPlan& plan, const fs::path& folder) {
   plan_in(folder);  // refuses what is none
   make_fleet_folder(folder / "tasks");
+  // One plan at a time: no tasks of one beside the plan of another.
+  const detail::FolderLock lock(folder / "tasks");
   std::string text;
   for (const PlannedDevice& one : plan.devices)
     text += with_valid_text(device_json(one)).dump() + "\n";
@@ -538,7 +542,7 @@ void write_plan(const FleetPlan& plan, const fs::path& folder) {
   std::error_code error;
   for (std::size_t k = plan.units.size(); fs::remove(folder / task_file(k), error); ++k) {
   }
-  remove_litter((folder / "tasks").string());
+  if (lock.held()) detail::remove_litter((folder / "tasks").string());
   sync_folder((folder / "tasks").string());
   write_whole_file((folder / kPlanFile).string(), head.dump() + "\n" + text, true);
 }

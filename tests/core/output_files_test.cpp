@@ -15,6 +15,8 @@
 
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/file/file_owner.hpp"
+#include "libchar/core/file/folder_lock.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/shared.hpp"
 
@@ -127,11 +129,11 @@ TEST_CASE("a journal that leads out of its folder, or is none, is refused") {
 
 TEST_CASE("two runs on one folder: the second waits for the first, and says so where that lasts") {
   const test::TemporaryFolder folder;
-  auto other = std::make_unique<FolderLock>(folder.path());
-  CHECK(test::code_of([&] { const FolderLock lock(folder.path(), 0.05); }) == "E0515");
+  auto other = std::make_unique<detail::FolderLock>(folder.path());
+  CHECK(test::code_of([&] { const detail::FolderLock lock(folder.path(), 0.05); }) == "E0515");
   std::thread first([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    CHECK(names_in(folder.path()).empty());  // the second writes nothing before
+    CHECK(names_in(folder.path()) == std::set<std::string>{detail::kLockFile});  // nothing yet
     other.reset();
   });
   write_outputs(set_of(folder.path(), {"a.yaml"}), folder.path(), {}, false);
@@ -184,13 +186,136 @@ TEST_CASE("one of a pair that an interrupted run has left is not read, its neigh
   CHECK_NOTHROW(refuse_interrupted(folder / "other.bin"));
 }
 
-TEST_CASE("the next run that replaces a file removes what a killed one has left of it") {
+TEST_CASE(
+    "the next run that replaces a file removes what a killed one of this place has left of it") {
   const test::TemporaryFolder folder;
-  put_text(folder / "a.csv.libchar-tmp-999999999-0", "litter");
-  put_text(folder / "a.csv.libchar-tmp-mine", "not ours");
+  const std::string here = "a.csv.libchar-tmp-" + detail::place_of_process();
+  put_text(folder / (here + "-999999999-0"), "litter");
+  for (const char* other : {"a.csv.libchar-tmp-mine", "a.csv.libchar-tmp-0123456789abcdef-7-0"})
+    put_text(folder / other, "not ours");
   write_whole_file((folder / "a.csv").string(), "new");
   write_whole_file((folder / "a.csv").string(), "newer", true);
-  CHECK(names_in(folder.path()) == std::set<std::string>{"a.csv", "a.csv.libchar-tmp-mine"});
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a.csv",
+                                                         "a.csv.libchar-tmp-mine",
+                                                         "a.csv.libchar-tmp-0123456789abcdef-7-0"});
+}
+
+TEST_CASE("a temporary file of another place is litter when it is old and nobody holds it") {
+  const test::TemporaryFolder folder;
+  const fs::path other = folder / "a.csv.libchar-tmp-0123456789abcdef-7-0",
+                 earlier = folder / "a.csv.libchar-tmp-7-0";
+  for (const fs::path& file : {other, earlier}) {
+    put_text(file, "x");
+    detail::remove_litter(folder.path().string());
+    CHECK(fs::exists(file));  // its owner may not have come to lock it
+    fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(48));
+    const int owner = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+    REQUIRE(detail::lock_whole_file(owner) == detail::Lock::taken);
+    detail::remove_litter(folder.path().string());
+    CHECK(fs::exists(file));
+    ::close(owner);
+    detail::remove_litter(folder.path().string());
+    CHECK_FALSE(fs::exists(file));
+  }
+}
+
+TEST_CASE("a file being written is locked until it has its name") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "a.csv").string();
+  write_whole_file(path, "old");
+  WholeFile file(path, true);
+  file.write("new");
+  file.prepare();
+  CHECK(detail::owner_by_name(fs::path(file.temporary()).filename().string())->place ==
+        detail::place_of_process());
+  const int other = ::open(file.temporary().c_str(), O_RDWR | O_CLOEXEC);
+  CHECK(detail::lock_whole_file(other) == detail::Lock::of_another);
+  ::close(other);
+  file.commit();
+  CHECK(test::slurp(path) == "new");
+}
+
+TEST_CASE("a temporary file that somebody took away is an error, not a finished file") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "a.csv").string();
+  write_whole_file(path, "old");
+  WholeFile file(path, true);
+  file.write("new");
+  file.prepare();
+  fs::remove(file.temporary());
+  CHECK(test::code_of([&] { file.commit(); }) == "E0501");
+  CHECK(test::slurp(path) == "old");
+}
+
+TEST_CASE("a journal whose files are gone says so, one whose files have their names is finished") {
+  const test::TemporaryFolder folder;
+  OutputJournal journal;
+  for (const char* name : {"a", "b"}) {
+    put_text(folder / (std::string(name) + ".tmp"), std::string("new ") + name);
+    journal.rename.push_back(waiting_file(folder.path(), std::string(name) + ".tmp", name));
+  }
+  put_text(folder / "b", "old");
+  const auto interrupted = [&] { journal_file(folder.path(), journal).write(); };
+  interrupted();
+  fs::rename(folder / "a.tmp", folder / "a");  // killed here
+  fs::remove(folder / "b.tmp");
+  CHECK(test::code_of([&] { finish_journal(folder.path()); }) == "E0525");
+  CHECK(test::slurp(folder / "b") == "old");
+  CHECK(has_journal(folder.path()));
+  put_text(folder / "b.tmp", "new b");
+  finish_journal(folder.path());
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a", "b"});
+  CHECK(test::slurp(folder / "b") == "new b");
+  interrupted();  // killed before the journal was removed; both have their names
+  journal.rename[1].bytes = -1;
+  interrupted();
+  CHECK_NOTHROW(finish_journal(folder.path()));
+}
+
+TEST_CASE("what a killed run of several files waits for is no litter to a single file's run") {
+  const test::TemporaryFolder folder;
+  const std::string waiting = "a.libchar-tmp-" + detail::place_of_process() + "-999999999-0";
+  put_text(folder / waiting, "new");
+  put_text(folder / "c", "old");
+  OutputJournal journal;
+  journal.rename.push_back(waiting_file(folder.path(), waiting, "a"));
+  journal_file(folder.path(), journal).write();
+  write_whole_file((folder / "c").string(), "newer", true);
+  CHECK(test::slurp(folder / "a") == "new");
+  CHECK(names_in(folder.path()) == std::set<std::string>{"a", "c"});
+}
+
+TEST_CASE("who waits for a folder is told whose it is, and a lock that a kill has left is taken") {
+  const test::TemporaryFolder folder;
+  {
+    const detail::FolderLock first(folder.path());
+    CHECK(first.held());
+    CHECK(names_in(folder.path()) == std::set<std::string>{detail::kLockFile});
+    try {
+      const detail::FolderLock second(folder.path(), 0.01);
+      FAIL("both");
+    } catch (const Error& error) {
+      CHECK_THAT(
+          error.problem().what,
+          Catch::Contains("process " + std::to_string(::getpid())) && Catch::Contains("since 2"));
+    }
+  }
+  CHECK(names_in(folder.path()).empty());
+  put_text(folder / detail::kLockFile, "left by a kill");
+  CHECK(detail::FolderLock(folder.path(), 0).held());
+  CHECK(names_in(folder.path()).empty());
+}
+
+TEST_CASE(
+    "a lock is no way to somebody's file: links and other names of one are left as they are") {
+  const test::TemporaryFolder folder;
+  put_text(folder / "mine", "mine");
+  fs::create_symlink("mine", folder / detail::kLockFile);
+  CHECK(test::code_of([&] { const detail::FolderLock lock(folder.path(), 0); }) == "E0501");
+  fs::remove(folder / detail::kLockFile);
+  fs::create_hard_link(folder / "mine", folder / detail::kLockFile);
+  CHECK(detail::FolderLock(folder.path(), 0).held());
+  CHECK(test::slurp(folder / "mine") == "mine");
 }
 
 TEST_CASE("killed at any moment, the next run leaves a whole set and no litter") {

@@ -36,6 +36,7 @@ CALLS = KINDS[:13]
 CODES = {0, 2, 3, 4, 5}
 JOURNAL = ".libchar-outputs.json"
 MARK = ".libchar-tmp-"
+LOCK = ".libchar-lock"
 
 MODEL = ("format: sensor-model\nversion: 1\nchannel: gyro\nunit: rad/s\ndensity: two-sided\nrate_hz: 100\n"
          "white_noise: {{value: {}}}\n")
@@ -93,11 +94,14 @@ VERBS = {
     "fuse": {"prepare": ["replay", "array.csv", "--sensors", "c0,c1,c2", "--reference", "c3", "-o", "run",
                          "--no-timing"],
              "words": ["fuse", "array.csv", "--with", "run", "-o", "out.csv", "--force"]},
+    "plot": {"prepare": ["characterize", "log.csv", "-o", "run", "--no-timing"],
+             "words": ["plot", "run", "-c", "c0", "-o", "out.svg", "--csv", "out.csv", "--gnuplot", "out.gp",
+                       "--force"]},
     "compare": {"prepare": ["characterize", "log.csv", "-o", "run"], "words": ["compare", "run", "run", "--json"]},
 }
 
 
-QUICK = ["characterize", "simulate raw", "convert npy", "replay"]
+QUICK = ["characterize", "simulate raw", "convert npy", "replay", "plot"]
 
 
 class Bench:
@@ -150,9 +154,9 @@ class Bench:
 
 
 def files_of(folder):
-    """What is there apart from inputs: name → bytes."""
+    """What is there apart from inputs and the lock of a folder: name → bytes."""
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()
-            and p.name not in inputs(1)}
+            and p.name not in inputs(1) and p.name != LOCK}
 
 
 def sets_of(files):
@@ -168,7 +172,7 @@ def finished(folder):
     """A copy of the files in which a journal has been done by hand: what the next run has to make of them."""
     for journal in folder.rglob(JOURNAL):
         order = json.loads(journal.read_text())
-        for source, target in order["rename"]:
+        for source, target, *_ in order["rename"]:
             if (journal.parent / source).exists():
                 (journal.parent / source).rename(journal.parent / target)
         for name in order["remove"]:
@@ -304,7 +308,9 @@ class Verb:
     def after_fault(self, folder, ran, kind, fault):
         err = ran.stderr.decode(errors="replace")
         lines = [line for line in err.splitlines() if line]
-        state = self.state(folder)
+        # Where it cannot be removed, or nobody can know whose it is, the lock stays; the next run takes it.
+        left = kind not in ("unlink", "stat") and any(folder.rglob(LOCK))
+        state = f"mixed: {LOCK}" if left else self.state(folder)
         if ran.returncode < 0 or ran.returncode not in CODES:
             return f"exit {ran.returncode}: {err.strip()[:200]}", state
         if "internal error" in err or "terminate called" in err:
@@ -342,7 +348,7 @@ class Verb:
             if next_run is None or next_run.returncode != 0:
                 ended = f"{next_run and next_run.returncode}: {next_run and next_run.stderr.decode()[:200]}"
                 return f"the next run ends with {ended}", state
-            after = self.state(again)
+            after = f"mixed: {LOCK}" if any(again.rglob(LOCK)) else self.state(again)
             if after != "new" and self.new != self.old:
                 return f"the next run leaves {after}: {sorted(set(files_of(again)) - set(self.new))}", state
             return "", state

@@ -90,6 +90,9 @@ std::function<void()> export_options(VerbOptions& options, Session& session) {
       "a worker may be this many times slower than the machine that planned (default: 3)",
       1,
       1000);
+  options.only("where jobs have limits: slurm, snakemake",
+               [verb] { return verb->engine != "parallel"; },
+               {"--slower"});
   options
       .add_text(
           "--program",

@@ -1,24 +1,21 @@
 #include "libchar/core/detail/output_journal.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <thread>
 
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {
@@ -43,6 +40,15 @@ void remove_file(const fs::path& path, const char* doing) {
     throw failure_on(path, doing).hint(kRunAgain);
 }
 
+WaitingFile described(const struct stat& status) {
+  constexpr std::int64_t kNanoseconds = 1'000'000'000;
+  WaitingFile out;
+  out.bytes = status.st_size;
+  out.changed_ns = status.st_mtim.tv_sec * kNanoseconds + status.st_mtim.tv_nsec;
+  out.number = static_cast<std::int64_t>(status.st_ino);
+  return out;
+}
+
 /// The journal is a file in somebody's folder: no name in it leads out of that folder.
 std::string name_in(const Json& value) {
   const auto name = value.get<std::string>();
@@ -51,14 +57,42 @@ std::string name_in(const Json& value) {
   return name;
 }
 
+WaitingFile waiting_in(const Json& value) {
+  WaitingFile out{name_in(value.at(0)), name_in(value.at(1))};
+  if (value.size() == 2) return out;
+  out.bytes = value.at(2).get<std::int64_t>();
+  out.changed_ns = value.at(3).get<std::int64_t>();
+  out.number = value.at(4).get<std::int64_t>();
+  return out;
+}
+
+/// What the journal wants to move has been moved: the file that waited has the name. A renamed file keeps its
+/// time of change; a copy of the folder need not keep its number, nor a server.
+bool is_in_place(const fs::path& target, const WaitingFile& waiting) {
+  struct stat status {};
+  if (::lstat(target.c_str(), &status) != 0) return false;
+  const WaitingFile there = described(status);
+  return waiting.bytes < 0 ||
+         (there.bytes == waiting.bytes &&
+          (there.changed_ns == waiting.changed_ns || there.number == waiting.number));
+}
+
+Refusal lost(const fs::path& folder, const WaitingFile& waiting, bool begun) {
+  Refusal refusal = output_error("E0525", (folder / waiting.name).string())
+                        .says("is lost: {}, under which it waited on the disk, is not there",
+                              printable(waiting.temporary));
+  if (!begun) return refusal.hint("run it again");
+  return refusal.hint("results there may be of two runs; remove {}, then run it again",
+                      printable(journal_of(folder).string()));
+}
+
 OutputJournal read_journal(const fs::path& folder) {
   const fs::path path = journal_of(folder);
   const std::string text = file_text(path.string(), kMostJournalBytes);
   try {
     const Json document = Json::parse(text);
     OutputJournal journal;
-    for (const Json& pair : document.at("rename"))
-      journal.rename.emplace_back(name_in(pair.at(0)), name_in(pair.at(1)));
+    for (const Json& waiting : document.at("rename")) journal.rename.push_back(waiting_in(waiting));
     for (const Json& name : document.at("remove")) journal.remove.push_back(name_in(name));
     return journal;
   } catch (const std::exception&) {
@@ -71,7 +105,10 @@ OutputJournal read_journal(const fs::path& folder) {
 }  // namespace
 
 void JournalFile::write() const {
-  write_whole_file(path, text, true);
+  WholeFile file(path, true);
+  file.write(text);
+  file.commit_in_locked_folder();
+  sync_folder(fs::path(path).parent_path().string());
 }
 
 bool JournalFile::there() const noexcept {
@@ -81,23 +118,40 @@ bool JournalFile::there() const noexcept {
 
 JournalFile journal_file(const fs::path& folder, const OutputJournal& journal) {
   Json document = {{"rename", Json::array()}, {"remove", Json(journal.remove)}};
-  for (const auto& [from, to] : journal.rename)
-    document["rename"].push_back(Json::array({from, to}));
+  for (const WaitingFile& one : journal.rename)
+    document["rename"].push_back(
+        one.bytes < 0
+            ? Json::array({one.temporary, one.name})
+            : Json::array({one.temporary, one.name, one.bytes, one.changed_ns, one.number}));
   return {journal_of(folder).string(), document.dump() + "\n"};
+}
+
+WaitingFile waiting_file(const fs::path& folder,
+                         const std::string& temporary,
+                         const std::string& name) {
+  struct stat status {};
+  if (::lstat((folder / temporary).c_str(), &status) != 0)
+    throw failure_on(folder / name, "find its temporary file");
+  WaitingFile out = described(status);
+  out.temporary = temporary;
+  out.name = name;
+  return out;
 }
 
 void run_journal(const fs::path& folder, const OutputJournal& journal) {
   bool begun = false;
-  for (const auto& [from, to] : journal.rename) {
-    const fs::path source = folder / from, target = folder / to;
+  for (const WaitingFile& one : journal.rename) {
+    const fs::path source = folder / one.temporary, target = folder / one.name;
     // A second attempt: what failed once may have been a signal or a busy server.
-    if (::rename(source.c_str(), target.c_str()) == 0 || errno == ENOENT ||
+    if (::rename(source.c_str(), target.c_str()) == 0 ||
+        (errno == ENOENT && is_in_place(target, one)) ||
         ::rename(source.c_str(), target.c_str()) == 0) {
       begun = true;
       continue;
     }
     const int error = errno;
     if (!begun) ::unlink(journal_of(folder).c_str());
+    if (error == ENOENT) throw lost(folder, one, begun);
     errno = error;
     throw failure_on(target, "rename into place").hint(begun ? kRunAgain : "");
   }
@@ -122,30 +176,9 @@ bool has_journal(const fs::path& folder) {
 bool journal_names(const fs::path& folder, const std::string& name) {
   if (!has_journal(folder)) return false;
   const OutputJournal journal = read_journal(folder);
-  const auto renamed = [&](const auto& pair) { return pair.second == name; };
+  const auto renamed = [&](const WaitingFile& waiting) { return waiting.name == name; };
   return std::any_of(journal.rename.begin(), journal.rename.end(), renamed) ||
          std::find(journal.remove.begin(), journal.remove.end(), name) != journal.remove.end();
-}
-
-FolderLock::FolderLock(const fs::path& folder, double wait_s)
-    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (descriptor_ < 0) return;  // who may not read a folder may still write into it
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::duration<double>(wait_s);
-  for (bool late = false;; late = Clock::now() > end) {
-    // Where a file system has no locks there is none.
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-    if (late) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  ::close(descriptor_);
-  throw output_error("E0515", folder.string())
-      .says("another run is writing its results into this folder")
-      .hint("wait for it or choose another folder");
-}
-
-FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace libchar

@@ -5,7 +5,9 @@
 #include <set>
 
 #include "libchar/core/detail/output_journal.hpp"
+#include "libchar/core/file/file_owner.hpp"
 #include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/folder_lock.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
@@ -119,6 +121,12 @@ std::filesystem::path folder_of(const WholeFile& file) {
   return folder.empty() ? "." : folder;  // the one we are in
 }
 
+/// What a killed run has begun is finished, then what others have left is removed.
+void tidy(const std::filesystem::path& folder, const detail::FolderLock& lock) {
+  finish_journal(folder);
+  if (lock.held()) detail::remove_litter(folder.string());
+}
+
 /// All names at once, as far as a file system can: the journal first, then what it says. The folder is locked.
 void give_names(const std::vector<WholeFile*>& files,
                 const std::vector<std::string>& stale,
@@ -128,8 +136,10 @@ void give_names(const std::vector<WholeFile*>& files,
   journal.remove = stale;
   for (const WholeFile* file : files)
     if (!file->temporary().empty())
-      journal.rename.emplace_back(std::filesystem::path(file->temporary()).filename().string(),
-                                  std::filesystem::path(file->path()).filename().string());
+      journal.rename.push_back(
+          waiting_file(folder,
+                       std::filesystem::path(file->temporary()).filename().string(),
+                       std::filesystem::path(file->path()).filename().string()));
   for (WholeFile* file : files)
     if (file->temporary().empty()) file->commit();  // a device
   const JournalFile written = journal_file(folder, journal);
@@ -155,9 +165,8 @@ void commit_set(const std::vector<WholeFile*>& files, const std::filesystem::pat
     for (WholeFile* file : files) file->commit();
     return;
   }
-  const FolderLock lock(folder);
-  finish_journal(folder);
-  remove_litter(folder);
+  const detail::FolderLock lock(folder);
+  tidy(folder, lock);
   give_names(files, {}, folder);
 }
 
@@ -190,14 +199,15 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
                                        const std::vector<WholeFile*>& streamed) {
   const std::filesystem::path folder = into.empty() ? "." : into;  // the one we are in
   make_folder(folder);
-  const FolderLock lock(folder);
-  finish_journal(folder);
-  remove_litter(folder);
   std::vector<WholeFile> files;
   for (const OutputFile& output : outputs) {
     for (const std::string& input : inputs) refuse_same_file(input, output.path);
     files.emplace_back(output.path, force).write(output.text);
   }
+  for (WholeFile& file : files) file.flush_to_disk();
+  for (WholeFile* file : streamed) file->flush_to_disk();
+  const detail::FolderLock lock(folder);
+  tidy(folder, lock);
   const auto stale = force ? stale_files(outputs) : std::vector<std::string>{};
   for (const std::string& name : stale)
     for (const std::string& input : inputs) refuse_same_file(input, (folder / name).string());
@@ -211,7 +221,10 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
 
 void commit_together(const std::vector<WholeFile*>& files) {
   if (files.size() == 1) return files.front()->commit();
-  for (WholeFile* file : files) file->prepare();
+  for (WholeFile* file : files) {
+    file->flush_to_disk();
+    file->refuse_taken();
+  }
   std::vector<std::filesystem::path> folders;
   for (const WholeFile* file : files)
     if (std::find(folders.begin(), folders.end(), folder_of(*file)) == folders.end())

@@ -1,9 +1,7 @@
 #include "libchar/core/file/whole_file.hpp"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,9 +10,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <utility>
 
+#include "libchar/core/detail/output_journal.hpp"
+#include "libchar/core/file/file_owner.hpp"
+#include "libchar/core/file/folder_lock.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/refusal.hpp"
 
@@ -31,10 +31,6 @@ std::string folder_of(const std::string& path) {
 bool exists(const std::string& path) {
   struct stat status {};
   return ::lstat(path.c_str(), &status) == 0;
-}
-
-std::string temporary_name(const std::string& path, int attempt) {
-  return fmt::format("{}{}{}-{}", path, kTemporaryMark, ::getpid(), attempt);
 }
 
 // A device or pipe (/dev/null, /dev/full) cannot be replaced by renaming: it is written through.
@@ -118,7 +114,7 @@ WholeFile::WholeFile(std::string path, bool overwrite)
   descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
     if (!temporary_.empty()) forget_unfinished(temporary_);
-    temporary_ = temporary_name(path_, attempt);
+    temporary_ = detail::temporary_name(path_, attempt);
     remember_unfinished(temporary_);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) break;
@@ -129,6 +125,7 @@ WholeFile::WholeFile(std::string path, bool overwrite)
     errno = problem;
     fail("create a file in this folder");
   }
+  detail::lock_whole_file(descriptor_);  // where that is impossible, nobody removes anything
   keep_rights(descriptor_, path_);
 }
 
@@ -151,14 +148,14 @@ WholeFile::WholeFile(WholeFile&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       begin_(other.begin_),
       flushed_(other.flushed_),
+      on_disk_(other.on_disk_),
       overwrite_(other.overwrite_),
       special_(other.special_) {}
 
 WholeFile::~WholeFile() {
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (temporary_.empty()) return;
-  ::unlink(temporary_.c_str());
-  forget_unfinished(temporary_);
+  if (!temporary_.empty()) forget_unfinished(temporary_);
 }
 
 void WholeFile::hand_over() {
@@ -167,6 +164,7 @@ void WholeFile::hand_over() {
 }
 
 void WholeFile::write(std::string_view bytes) {
+  on_disk_ = false;
   buffer_.append(bytes);
   if (buffer_.size() >= kBuffer) flush();
 }
@@ -183,6 +181,7 @@ void WholeFile::flush() {
 }
 
 void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
+  on_disk_ = false;
   if (!flushed_) {
     buffer_.replace(offset, bytes.size(), bytes);
     return;
@@ -204,8 +203,10 @@ void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
 }
 
 void WholeFile::flush_to_disk() {
+  if (on_disk_ || descriptor_ < 0) return;
   flush();
   if (!special_ && ::fsync(descriptor_) != 0) fail("flush to disk");
+  on_disk_ = true;
 }
 
 // False where the name is taken.
@@ -223,7 +224,7 @@ void WholeFile::prepare() {
   if (special_) return;
   // A nameless file gets a temporary name first: linkat cannot replace.
   for (int attempt = 0; temporary_.empty(); ++attempt) {
-    const std::string name = temporary_name(path_, attempt);
+    const std::string name = detail::temporary_name(path_, attempt);
     remember_unfinished(name);
     if (link_to(name)) {
       temporary_ = name;
@@ -235,46 +236,56 @@ void WholeFile::prepare() {
       fail("name the finished file");
     }
   }
-  if (::close(std::exchange(descriptor_, -1)) != 0) fail("close");
+  refuse_taken();
+}
+
+// What has come to stand under the name since the file was opened.
+void WholeFile::refuse_taken() const {
   struct stat status {};
+  if (special_) return;
   if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) {
     errno = EISDIR;
     fail("take its name");
   }
-  if (!overwrite_ && exists(path_)) {
-    errno = EEXIST;
-    fail("take its name");
-  }
+  if (!overwrite_ && exists(path_)) refuse_name(path_, false);
 }
 
 // Where nothing has the name a nameless file gets it at once, and no kill can leave it under a temporary one.
 bool WholeFile::take_free_name() {
-  if (special_ || descriptor_ < 0 || !temporary_.empty()) return false;
-  flush_to_disk();
+  if (!temporary_.empty() || exists(path_)) return false;
   const GivingNames naming;
-  if (exists(path_) || !link_to(path_)) return false;
-  if (::close(std::exchange(descriptor_, -1)) != 0) {
-    ::unlink(path_.c_str());
-    fail("close");
-  }
-  sync_folder(folder_of(path_));
-  return true;
+  return link_to(path_);
+}
+
+void WholeFile::close_device() {
+  flush_to_disk();
+  if (descriptor_ >= 0 && ::close(std::exchange(descriptor_, -1)) != 0) fail("write");
 }
 
 void WholeFile::commit() {
-  if (take_free_name()) return;
-  prepare();
-  if (descriptor_ >= 0) {  // a device or pipe
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
-    return;
-  }
+  if (special_) return close_device();
+  flush_to_disk();
   {
+    const std::string folder = folder_of(path_);
+    const detail::FolderLock lock(folder);
+    finish_journal(folder);
+    if (lock.held() && exists(path_)) detail::remove_litter(folder);
+    commit_in_locked_folder();
+  }
+  sync_folder(folder_of(path_));
+}
+
+void WholeFile::commit_in_locked_folder() {
+  if (special_) return close_device();
+  flush_to_disk();
+  if (!take_free_name()) {
+    prepare();
     const GivingNames naming;
     if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename into place");
     hand_over();
   }
-  remove_litter(folder_of(path_));
-  sync_folder(folder_of(path_));
+  // Only now: until it has its name the lock says whose it is. What closing could report, fsync has.
+  ::close(std::exchange(descriptor_, -1));
 }
 
 bool writes_through(const std::string& path) {
@@ -285,24 +296,6 @@ void check_output(const std::string& path, bool overwrite) {
   // A device or pipe is not even opened: who reads it would take that for the whole of it.
   if (writes_through(path)) return;
   const WholeFile trial(path, overwrite);  // discarded: nothing appears under the name
-}
-
-void remove_litter(const std::string& folder) {
-  const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(folder.c_str()), ::closedir);
-  if (!entries) return;
-  while (const dirent* entry = ::readdir(entries.get())) {
-    const std::string name = entry->d_name;
-    const std::size_t mark = name.rfind(kTemporaryMark);
-    if (mark == std::string::npos) continue;
-    const std::string number = name.substr(mark + kTemporaryMark.size());
-    pid_t process = 0;
-    const auto read = std::from_chars(number.data(), number.data() + number.size(), process);
-    if (read.ec != std::errc{} || *read.ptr != '-' || process <= 0 ||
-        number.find_first_not_of("-0123456789") != std::string::npos)
-      continue;
-    // Of a folder of such a name it is none.
-    if (::kill(process, 0) != 0 && errno == ESRCH) ::unlink((folder + "/" + name).c_str());
-  }
 }
 
 void sync_folder(const std::string& folder) {

@@ -1,6 +1,7 @@
 #pragma once
 // Output files are whole or absent: written under no name (or a temporary one) in the target's folder, flushed to disk and
-// given their name only by commit().
+// given their name only by commit(). Until then they are locked: no other run, here or on another machine,
+// takes them for litter.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,9 +10,6 @@
 #include <vector>
 
 namespace libchar {
-
-/// Between the name that a file will have and the process and number that make a temporary one of it.
-inline constexpr std::string_view kTemporaryMark = ".libchar-tmp-";
 
 class WholeFile {
  public:
@@ -30,10 +28,19 @@ class WholeFile {
   /// Replaces bytes at `offset` that were written before (for headers that hold a count). Throws Error(output) where more was
   /// written than is kept back and the file is a pipe.
   void rewrite(std::size_t offset, std::string_view bytes);
-  /// Everything of commit() that can fail for want of space or rights, short of taking the name.
+  /// All bytes get to the disk.
+  void flush_to_disk();
+  /// Everything of commit() that can fail for want of space or rights, short of taking the name. The folder is
+  /// locked.
   void prepare();
-  /// fsync, the name, fsync of the folder. Throws Error(output) and leaves an older file untouched on failure.
+  /// Throws Error(output) where the name has been taken since: by a folder, or, unless files are overwritten,
+  /// by anything.
+  void refuse_taken() const;
+  /// fsync, the name, fsync of the folder, which is locked meanwhile. Throws Error(output) and leaves an older
+  /// file untouched on failure.
   void commit();
+  /// The same in a folder that is locked already.
+  void commit_in_locked_folder();
   const std::string& path() const { return path_; }
   /// A device, a pipe or an open file of this process, which is written through and has its name already.
   bool special() const { return special_; }
@@ -45,7 +52,7 @@ class WholeFile {
  private:
   bool open_through();
   void flush();
-  void flush_to_disk();
+  void close_device();
   bool link_to(const std::string& name) const;
   bool take_free_name();
   [[noreturn]] void fail(std::string_view doing) const;
@@ -53,11 +60,8 @@ class WholeFile {
   int descriptor_ = -1;
   std::int64_t begin_ =
       0;  ///< place of our first byte in the file; negative where nothing can be gone back to
-  bool flushed_ = false, overwrite_ = false, special_ = false;
+  bool flushed_ = false, on_disk_ = false, overwrite_ = false, special_ = false;
 };
-
-/// Removes temporary files that a process which is no more has left in the folder.
-void remove_litter(const std::string& folder);
 
 /// The path leads to a device, a pipe or an open file of this process (/dev/stdout): its folder is not a place for files.
 bool writes_through(const std::string& path);

@@ -1,18 +1,18 @@
 #include "libchar/fleet/detail/result_store.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <functional>
 #include <system_error>
 
 #include "libchar/characterize/stretches.hpp"
+#include "libchar/core/file/file_owner.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/whole_file.hpp"
@@ -27,28 +27,22 @@ constexpr std::string_view kWorking = ".working-";
 constexpr std::string_view kDamaged = ".damaged-";
 constexpr std::size_t kMostRecord = std::size_t{64} << 20U;
 
-std::string this_machine() {
-  std::array<char, 256> name{};
-  ::gethostname(name.data(), name.size() - 1);
-  std::string out = name.data();
-  for (char& c : out)
-    if (c == '-' || c == '/') c = '_';
-  return out.empty() ? "unnamed" : out;
-}
-
-/// ".working-ID-MACHINE-PROCESS-NUMBER"
+/// ".working-ID-PLACE-PROCESS-NUMBER"
 std::string working_name(const std::string& id) {
   static std::atomic<int> number{0};
-  return fmt::format("{}{}-{}-{}-{}", kWorking, id, this_machine(), ::getpid(), number++);
+  return fmt::format(
+      "{}{}-{}-{}-{}", kWorking, id, detail::place_of_process(), ::getpid(), number++);
 }
 
-/// Of a worker of this machine that is no more.
+/// Of a worker of this place that is no more.
 bool is_litter(const std::string& name) {
-  const std::string mine = fmt::format("-{}-", this_machine());
+  const std::string mine = fmt::format("-{}-", detail::place_of_process());
   const std::size_t at = name.find(mine);
   if (!name.starts_with(kWorking) || at == std::string::npos) return false;
-  const int process = std::atoi(name.c_str() + at + mine.size());
-  return process > 0 && process != ::getpid() && ::kill(process, 0) != 0 && errno == ESRCH;
+  const std::string rest = name.substr(at + mine.size());
+  detail::FileOwner owner{detail::place_of_process()};
+  std::from_chars(rest.data(), rest.data() + rest.size(), owner.process);
+  return owner.process > 0 && owner.process != ::getpid() && owner.is_gone();
 }
 
 void remove_litter_in(const fs::path& folder) {

@@ -68,6 +68,8 @@ def without_effect(program, verb, option, base, folder, plain):
             plain[key] = seen(program, words, base, folder)
         for value in good_values(option):
             flag = option["flags"][-1]
+            if flag in arguments:
+                continue
             now = seen(program, words + ([flag] if value is None else [f"{flag}={value}"]), base, folder)
             if now is None:
                 continue

@@ -34,6 +34,11 @@ def logs(folder):
     table(folder / "temp.csv", "t[s],a[V],temp[degC]", t, noise(.1), [25 + 5 * math.sin(x / 7) for x in t])
     table(folder / "arr.csv", "t[s],a[deg/s],b[deg/s],c[deg/s],ref[deg/s]", t,
           *([u + v for u, v in zip(truth, noise(sd))] for sd in (.1, .2, .3)), truth)
+    faulty = [[u + v + fault for u, v, fault in zip(truth, noise(sd), faults)]
+              for sd, faults in ((.1, [5.0 * (1200 < i < 1600) for i in range(SAMPLES)]), (.2, [0] * SAMPLES),
+                                 (.3, [0] * SAMPLES))]
+    table(folder / "faulty.csv", "t[s],a[deg/s],b[deg/s],c[deg/s],ref[deg/s]", t, *faulty, truth)
+    table(folder / "loud.csv", "t[s],a[deg/s],b[deg/s]", t, noise(.5), noise(.1))
     table(folder / "rad.csv", "t[s],g[rad/s]", t, noise(.05))
     table(folder / "acc.csv", "t[s],z[m/s^2]", t, noise(.02))
     table(folder / "rate.csv", "p,q", noise(1), noise(2))
@@ -63,12 +68,14 @@ def make(program, folder):
             raise SystemExit(f"inputs: {' '.join(words)}: {done.stderr.decode()}")
 
     run("characterize", "x.csv", "-o", "rep", "--no-timing")
+    run("characterize", "loud.csv", "-o", "loud", "--no-timing")
     for log, models in (("x", "mx"), ("rad", "mr"), ("acc", "ma")):
         run("fit", log + ".csv", "--models", models)
     run("replay", "arr.csv", "--sensors", "a,b,c", "--reference", "ref", "--learning", "0..8", "-o", "rr",
         "--no-timing")
     run("replay", "arr.csv", "--sensors", "a,b,c", "--reference", "ref", "--learning", "0..8",
         "--write-scene", "arr.scene.yaml")
+    run("replay", "faulty.csv", "--sensors", "a,b,c", "--reference", "ref", "-o", "unlike", "--no-timing")
     run("allan", "x.csv", "-o", "allan.csv")
     run("psd", "x.csv", "-o", "psd.csv")
     run("simulate", "mx/a.sensor.yaml", "--samples", "500", "-o", "sim.csv")
@@ -77,6 +84,7 @@ def make(program, folder):
     run("fleet", "plan", "x2.csv", "-o", "fl2")
     run("fleet", "run", "fl2")
     run("fleet", "plan", "gap.csv", "-o", "fl3")
+    run("fleet", "plan", "x.csv", "x2.csv", "gap.csv", "-o", "fl4")
     run("bench", "--quick", "--parts", "design", "mx/a.sensor.yaml", "-o", "bn")
 
 
@@ -95,8 +103,9 @@ ARGUMENTS = {
     "replay": [["arr.csv", "--sensors", "a,b,c", "--reference", "ref", "-o", "OUT"],
                ["arr.csv", "--sensors", "a,b", "-o", "OUT"], ["arr.scene.yaml", "-o", "OUT"],
                ["arr.scene.yaml", "--explain"]],
-    "fuse": [["arr.csv", "--with", "rr", "-o", "OUT.csv"]],
-    "compare": [["rep", "rep"], ["rr", "rr"]],
+    "fuse": [["arr.csv", "--with", "rr", "-o", "OUT.csv"],
+             ["faulty.csv", "--with", "rr", "--algorithm", "minque", "-o", "OUT.csv"]],
+    "compare": [["rep", "rep"], ["rr", "rr"], ["rep", "loud"], ["rr", "unlike"]],
     "report": [["rep"], ["rr"]],
     "plot": [["rep", "-o", "OUT.svg"], ["rr", "-o", "OUT.svg"], ["allan.csv", "-o", "OUT.svg"],
              ["psd.csv", "-o", "OUT.png"], ["mx/a.sensor.yaml", "--csv", "OUT.csv"]],
@@ -108,6 +117,6 @@ ARGUMENTS = {
     "fleet-run": [["fl3"]],
     "fleet-status": [["fl"], ["fl3"]],
     "fleet-merge": [["fl", "-o", "OUT"], ["fl", "fl2", "-o", "OUT"]],
-    "fleet-export": [["fl3", "--to", "parallel"]],
+    "fleet-export": [["fl3", "--to", "parallel"], ["fl4", "--to", "slurm"]],
     "fleet-compare": [["fl", "fl2"]],
 }

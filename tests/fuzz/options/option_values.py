@@ -58,6 +58,7 @@ SPECIAL = {"--taus": ["octave", "decade", "dense", "all", "ten", "0", "1e-9", "0
            "--terms": ["N", "R", "N,B,K", "N,B,K,R,quantization", "B", "K", "quantization", "Q", "x", "N,N"],
            "--threshold": ["0", "5", "1e308", "-1", "1e-308"], "--algorithm": ["mean", "nope", "minque", "perceptron"],
            "--algorithms": ["mean", "mean,mean", "mean,minque", "nope", "inverse-variance"],
+           "--slower": ["2.5", "1000", "0.5"],
            "--topic": ["nope", "/imu0"], "--parts": ["design", "design,design", "x"],
            "--sensors": ["a,b", "a", "a,a", "*", "nope", "ref"], "--reference": ["ref", "a", "nope"],
            "--color": ["always", "never", "auto", "x"], "--estimates": ["csv", "npy", "f64", "x"],
