@@ -16,11 +16,12 @@ std::optional<std::string> whole_text(const std::string& path, std::size_t max_b
   return text.size() > max_bytes ? std::nullopt : std::optional(text);
 }
 
-// Those that are neither blank nor comments.
-std::vector<csv::Line> lines_of(const std::string& text) {
+// Those that are neither blank nor comments, at most so many.
+std::vector<csv::Line> lines_of(const std::string& text, std::size_t most) {
   std::vector<csv::Line> lines;
   std::uint64_t number = 1;
-  for (std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
+  std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  while (at < text.size() && lines.size() < most) {
     const csv::Line line = csv::line_at(text, at, number);
     if (!trimmed(line.text).empty() && !csv::is_comment(line.text)) lines.push_back(line);
     at = line.after;
@@ -46,7 +47,7 @@ std::optional<TextTable> read_text_table(const std::string& path, std::size_t ma
   Sha256 hash;
   hash.update(*text);
   table.sha256 = hash.finish();
-  const std::vector<csv::Line> lines = lines_of(*text);
+  const std::vector<csv::Line> lines = lines_of(*text, text->size());
   if (lines.empty()) return table;
   const std::vector<csv::Line> sample(
       lines.begin(),
@@ -57,6 +58,15 @@ std::optional<TextTable> read_text_table(const std::string& path, std::size_t ma
   table.header = row_of(lines[0], delimiter);
   for (std::size_t i = 1; i < lines.size(); ++i) table.rows.push_back(row_of(lines[i], delimiter));
   return table;
+}
+
+TextRow detail::header_of_text_table(const std::string& path) {
+  // Names, and rows enough to know the delimiter by.
+  constexpr std::size_t kHeadBytes = std::size_t{1} << 16U;
+  const std::string head = file_text(path, kHeadBytes);
+  const std::vector<csv::Line> lines = lines_of(head, csv::kSample);
+  if (lines.empty()) return {};
+  return row_of(lines[0], csv::candidates(lines).front().delimiter);
 }
 
 std::optional<double> number_in(const TextCell& cell, char decimal) {

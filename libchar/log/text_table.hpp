@@ -32,6 +32,12 @@ struct TextTable {
 /// Reads a table of at most `max_bytes`; nothing for a larger file. Throws Error(input) when the file cannot be opened.
 std::optional<TextTable> read_text_table(const std::string& path, std::size_t max_bytes);
 
+namespace detail {
+/// The header alone, of a file of any size; no cells if there is none. Throws Error(input) when the file cannot be
+/// opened.
+TextRow header_of_text_table(const std::string& path);
+}  // namespace detail
+
 /// The finite number in a cell of a table with this decimal mark; nothing when there is none.
 std::optional<double> number_in(const TextCell& cell, char decimal);
 

@@ -1,6 +1,8 @@
 #include "libchar/core/text/text.hpp"
 
 #include <catch2/catch.hpp>
+#include <cctype>
+#include <cstring>
 #include <limits>
 
 #include "libchar/core/text/decimal.hpp"
@@ -31,6 +33,18 @@ TEST_CASE("the first and the last of each range of invisible characters are esca
         Row{"\u202F", "\u202F"},    Row{"\u2060", "\\u{2060}"}, Row{"\u2069", "\\u{2069}"},
         Row{"\u206A", "\u206A"},    Row{"\uFEFF", "\\u{FEFF}"}})
     CHECK(printable(row.text) == row.shown);
+}
+
+TEST_CASE("a word of a shell is bare only where a shell takes it as it is") {
+  CHECK(shell_word("") == "''");
+  CHECK(shell_word("it's") == "'it'\\''s'");
+  for (int c = 1; c < 128; ++c) {
+    if (c == '\'') continue;
+    const bool bare = std::isalnum(c) != 0 || std::strchr("_-./:,+=@%", c) != nullptr;
+    const std::string word = std::string("a") + static_cast<char>(c);
+    INFO(c);
+    CHECK(shell_word(word) == (bare ? word : "'" + word + "'"));
+  }
 }
 
 TEST_CASE("numbers read back to the same double, in YAML as numbers") {

@@ -1,9 +1,11 @@
 #include "libchar/figure/draw_figure.hpp"
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <random>
 
 #include "libchar/core/error.hpp"
 #include "libchar/figure/figure_data.hpp"
@@ -174,6 +176,38 @@ TEST_CASE("a PNG is as large as its resolution says, and says it") {
   CHECK(number(20) == 200);
   CHECK(png.substr(37, 4) == "pHYs");
   CHECK(number(41) == 3937);  // points a metre
+}
+
+TEST_CASE(
+    "a hundred thousand points are drawn in seconds, whatever their order, as often as they are "
+    "seen") {
+  constexpr std::size_t kPoints = 100'000;
+  SourceCurve curve = test::figure_curve("g", "deg/s");
+  std::mt19937_64 random(1);
+  std::lognormal_distribution<double> values(0, 1);
+  for (auto* column :
+       {&curve.x, &curve.y, &curve.low95, &curve.high95, &curve.low68, &curve.high68})
+    column->clear();
+  curve.unreliable.clear();
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    curve.x.push_back(values(random));
+    curve.y.push_back(values(random));
+  }
+  const auto seconds = [&](bool line) {
+    Chart chart = allan_of({curve});
+    for (FigureSeries& series : chart.series) {
+      series.look.width = line ? 0.9 : 0;
+      series.look.marker = line ? FigureMarker::none : FigureMarker::circle;
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    Findings warnings;
+    for (const FigureFormat format : {FigureFormat::svg, FigureFormat::pdf, FigureFormat::png})
+      draw_figure(chart, format, {}, warnings);
+    if (!line) CHECK(times(svg_of_chart(chart), "<circle") < kPoints);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  CHECK(seconds(true) < 20);  // quadratic: some minutes
+  CHECK(seconds(false) < 20);
 }
 
 TEST_CASE("a page without room for a plot is refused") {

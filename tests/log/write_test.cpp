@@ -107,6 +107,23 @@ TEST_CASE("CSV, NPY and raw of the same data read back to the same bits") {
   CHECK(count == 36);
 }
 
+TEST_CASE("columns too long for memory come back from their temporary file in order") {
+  const test::TemporaryFolder folder;
+  // More than three stretches of half a megabyte, and a rest.
+  const std::vector<ColumnValues> samples = {any_doubles(210'000, 1), any_doubles(210'000, 2)};
+  for (const char* file : {"b.npy", "c.f64"}) {
+    const std::string path = (folder / file).string();
+    WriteOptions options;
+    options.order = "planar";
+    write(path, info_of({{"a", "V"}, {"b", "V"}}), samples, options, 9999);
+    ReadOptions reading;
+    reading.rate_hz = 200;
+    const Recording got = read_recording(path, reading);
+    REQUIRE(got.samples.size() == 2);
+    for (std::size_t c = 0; c < 2; ++c) CHECK(bits(got.samples[c]) == bits(samples[c]));
+  }
+}
+
 TEST_CASE("32-bit files hold 32-bit values exactly, and say what they rounded") {
   const test::TemporaryFolder folder;
   const std::vector<ColumnValues> samples = {{0.5, 1.0 / 3, kMissing, -0.0}};

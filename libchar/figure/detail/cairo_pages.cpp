@@ -7,11 +7,13 @@
 #include <fmt/format.h>
 #include <fontconfig/fontconfig.h>
 
+#include <algorithm>
 #include <boost/crc.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>
+#include <functional>
 #include <memory>
 #include <numbers>
 
@@ -84,17 +86,71 @@ void set_colour(cairo_t* pen, const Colour& c, double opacity = 1) {
   cairo_set_source_rgba(pen, c.red, c.green, c.blue, opacity);
 }
 
-void trace(cairo_t* pen, const DrawnPath& p) {
+/// Points or shapes that are painted at a time. Cairo's time grows with the crossings among the lines of one path:
+/// in parts it is linear in the number of points.
+constexpr std::size_t kPart = 256;
+
+void trace(cairo_t* pen, const std::vector<Place>& line) {
+  for (std::size_t i = 0; i < line.size(); ++i)
+    i == 0 ? cairo_move_to(pen, line[i].x, line[i].y) : cairo_line_to(pen, line[i].x, line[i].y);
+}
+
+/// Filled shapes, so many at a time; `paint_part` paints the path and leaves none.
+void trace_shapes(cairo_t* pen, const DrawnPath& p, const std::function<void()>& paint_part) {
+  std::size_t count = 0;
+  const auto one_more = [&] {
+    cairo_close_path(pen);
+    if (p.opacity == 1 && ++count % kPart == 0) paint_part();
+  };
   for (const std::vector<Place>& line : p.lines) {
-    for (std::size_t i = 0; i < line.size(); ++i)
-      i == 0 ? cairo_move_to(pen, line[i].x, line[i].y) : cairo_line_to(pen, line[i].x, line[i].y);
-    if (p.filled) cairo_close_path(pen);
+    trace(pen, line);
+    one_more();
   }
   for (const Place& c : p.circles) {
     cairo_new_sub_path(pen);
     cairo_arc(pen, c.x, c.y, p.radius, 0, 2 * std::numbers::pi);
-    cairo_close_path(pen);
+    one_more();
   }
+  paint_part();
+}
+
+void stroke_part(cairo_t* pen, const DrawnPath& p, double dash_begins) {
+  cairo_set_dash(pen, p.dash.data(), static_cast<int>(p.dash.size()), dash_begins);
+  cairo_stroke(pen);
+}
+
+/// An open line in parts that share one stretch, so that its corners are joined and its dashes go on.
+void stroke_line(cairo_t* pen, const DrawnPath& p, const std::vector<Place>& line) {
+  double length = 0;  // before the part
+  for (std::size_t begin = 0; begin == 0 || begin + 2 < line.size(); begin += kPart) {
+    const std::size_t end = std::min(begin + kPart + 2, line.size());
+    double beyond = length;
+    for (std::size_t i = begin; i < end; ++i) {
+      i == begin ? cairo_move_to(pen, line[i].x, line[i].y)
+                 : cairo_line_to(pen, line[i].x, line[i].y);
+      if (i > begin && i <= begin + kPart)
+        beyond += std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
+    }
+    stroke_part(pen, p, length);
+    length = beyond;
+  }
+}
+
+void stroke_lines(cairo_t* pen, const DrawnPath& p) {
+  std::size_t points = 0;
+  for (const std::vector<Place>& line : p.lines) {
+    if (points + line.size() > kPart) {
+      stroke_part(pen, p, 0);
+      points = 0;
+    }
+    if (line.size() > kPart) {
+      stroke_line(pen, p, line);
+    } else {
+      trace(pen, line);
+      points += line.size();
+    }
+  }
+  stroke_part(pen, p, 0);
 }
 
 void paint(cairo_t* pen, const DrawnPath& p, const Box& frame) {
@@ -105,17 +161,18 @@ void paint(cairo_t* pen, const DrawnPath& p, const Box& frame) {
     cairo_rectangle(pen, frame.left, frame.top, frame.right - frame.left, frame.bottom - frame.top);
     cairo_clip(pen);
   }
-  trace(pen, p);
   if (p.filled) {
     set_colour(pen, p.fill, p.opacity);
-    cairo_fill_preserve(pen);
+    trace_shapes(pen, p, [&] { cairo_fill(pen); });
   }
   if (p.stroked) {
     set_colour(pen, p.stroke);
     cairo_set_line_width(pen, p.width);
     cairo_set_line_join(pen, CAIRO_LINE_JOIN_ROUND);
-    cairo_set_dash(pen, p.dash.data(), static_cast<int>(p.dash.size()), 0);
-    cairo_stroke(pen);
+    if (p.filled || !p.circles.empty())
+      trace_shapes(pen, p, [&] { stroke_part(pen, p, 0); });
+    else
+      stroke_lines(pen, p);
   }
   cairo_restore(pen);
 }

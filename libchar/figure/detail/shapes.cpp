@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "libchar/figure/detail/sheet.hpp"
 
@@ -21,6 +23,11 @@ bool is_place(const Place& p) {
 
 Place place_of(const Sheet& sheet, double x, double y) {
   return {sheet.x.at(x), sheet.y.at(y)};
+}
+
+/// A place inside the frame by the finest step that is seen.
+long cell_of(double coordinate) {
+  return std::lround(coordinate / kColumn);
 }
 
 /// Runs of points without gaps; of a column that many points share the first, lowest, highest and last.
@@ -178,13 +185,17 @@ void draw_markers(Sheet& sheet, const FigureSeries& s) {
   if (s.look.marker == FigureMarker::none) return;
   // Beside a line, markers of a dense curve would hide it: those that are not too close are enough.
   const double apart = s.look.width > 0 ? 9 : 0;
+  // Without a line, those at one place are one.
+  std::set<std::pair<long, long>> taken;
   std::vector<Place> full, hollow;
   double last = -INFINITY;
   for (std::size_t i = 0; i < s.x.size(); ++i) {
     const Place p = place_of(sheet, s.x[i], s.y[i]);
     if (!is_place(p) || !sheet.drawing.frame.holds(p) || p.x - last < apart) continue;
+    const bool is_hollow = i < s.hollow.size() && s.hollow[i];
+    if (apart == 0 && !taken.emplace(cell_of(p.x), 2 * cell_of(p.y) + is_hollow).second) continue;
     last = p.x;
-    (i < s.hollow.size() && s.hollow[i] ? hollow : full).push_back(p);
+    (is_hollow ? hollow : full).push_back(p);
     sheet.busy.push_back(p);
   }
   add_marker(sheet, s.look, full, false);

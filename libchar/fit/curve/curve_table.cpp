@@ -218,14 +218,13 @@ std::optional<CurveTable> read_curve_table(const std::string& path, bool is_alla
 std::string curve_in_header(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return "";
-  std::optional<TextTable> table;
+  TextRow first;
   try {
-    table = read_text_table(path, kMaxBytes);
+    first = detail::header_of_text_table(path);
   } catch (const Error&) {
     return "";
   }
-  if (!table) return "";
-  const std::vector<TextCell>& header = table->header.cells;
+  const std::vector<TextCell>& header = first.cells;
   if (find(header, {"curve"}) && find(header, {"x"}) && find(header, {"value"}))
     return "allan or psd";
   if (find(header, {"tau_s", "tau", "averaging_time"})) {

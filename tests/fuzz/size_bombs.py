@@ -1,0 +1,301 @@
+#!/usr/bin/env python3
+"""Small files that declare much: size_bombs.py PROGRAM [--only WORD] [--seconds S] [--megabytes M] [--verbose]
+
+Work and memory are bounded by the bytes that are there, not by the sizes that a file states. Each file of at most
+10 MB, of every format, is read by inspect (documents by the verb that takes them), which has to end with an exit
+code of docs/errors.md and at most one error within --seconds of processor time (2) and --megabytes of memory (256).
+"""
+import argparse
+import io
+import json
+import os
+import pathlib
+import resource
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+import zipfile
+import zlib
+
+FIXTURES = pathlib.Path(__file__).resolve().parents[2] / "fixtures"
+MILLION = 1_000_000
+
+
+def csv_files():
+    yield "million columns", b"c," * MILLION + b"\n" + b"1," * MILLION + b"\n"
+    yield "hundred thousand columns", (",".join(f"c{k}" for k in range(100_000)) + "\n"
+                                       + ("1," * 99_999 + "1\n") * 20).encode()
+    yield "colliding names", b"a," * 99_999 + b"a\n" + (b"1," * 99_999 + b"1\n") * 20
+    yield "numbered names that collide", ((",".join(["a", "a_2", "a_3"] * 30_000) + "\n").encode()
+                                          + b"1," * 89_999 + b"1\n")
+    yield "names with units", (",".join(f"a{k} [m/s^2]" for k in range(50_000)) + "\n"
+                               + "1," * 49_999 + "1\n").encode() * 1
+    yield "names of strange units", (",".join(f"a{k} [{'m' * (k % 90)}/s^{k}]" for k in range(50_000)) + "\n"
+                                     + "1," * 49_999 + "1\n").encode()
+    yield "quoted header of a million lines", b'"' + b"\n" * MILLION + b'",b\n1,2\n2,3\n'
+    yield "quoted cells of many lines", b'a,b\n' + (b'"' + b"\n" * 1000 + b'",2\n') * 5000
+    yield "one long name", b"a" * 9_000_000 + b",b\n1,2\n2,3\n"
+    yield "names of 100 kB", b",".join(b"a" * 100_000 for _ in range(90)) + b"\n" + b"1," * 89 + b"1\n"
+    yield "nothing but line ends", b"\n" * 10_000_000
+    yield "nothing but commas", b"," * 10_000_000
+    yield "nothing but quotes", b'"' * 10_000_000
+    yield "nothing but blanks", b" " * 10_000_000
+    yield "nothing but comments", b"# x\n" * 2_500_000
+    yield "nothing but digits", b"1" * 10_000_000
+    yield "a line of every delimiter", b"1,2;3\t4|5 " * 900_000
+    yield "carriage returns", b"t,a\r" + b"1,2\r" * 2_400_000
+    yield "zeros", bytes(10_000_000)
+    yield "stamps far apart", b"t[s],a\n0,1\n1e-9,2\n" + b"".join(b"%d,1\n" % (10**9 * k) for k in range(1, 200_000))
+    yield "short rows", b"t,a\n" + b"1\n" * 4_900_000
+    yield "long decimals", b"t,a\n" + b"".join(b"%d,0.%s\n" % (k, b"3" * 5000) for k in range(1900))
+    yield "words in every cell", b"t,a\n" + b"x,y\n" * 2_400_000
+    yield "dates", b"t,a\n" + b"2024-02-30T00:00:00Z,1\n" * 400_000
+    yield "half a BOM of UTF-16", b"\xff\xfe" + b"1\x00,\x00" * 2_400_000
+
+
+def npy(shape, kind="<f8", data=b""):
+    head = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}"
+    head += " " * (-(len(head) + 11) % 64) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + data
+
+
+def array_files():
+    yield "npy", "more than there is", npy("(1000000000000, 3)", data=bytes(800))
+    yield "npy", "as many columns as values", npy("(1, 1000000)", data=bytes(8_000_000))
+    yield "npy", "columns of bytes", npy("(1, 9000000)", "|i1", bytes(9_000_000))
+    yield "npy", "no rows", npy("(0, 1000000000000)")
+    yield "npy", "as many dimensions as fit", npy("(" + "1, " * 2000 + ")", data=bytes(8))
+    for name, members in (("zeros", [("a", npy("(1000000000,)", data=b""), 9_000_000_000)]),
+                          ("many members", [(f"m{k}", npy("(1,)", data=bytes(8)), 0) for k in range(50_000)]),
+                          ("long names", [("n" * 60_000 + str(k), npy("(4,)", data=bytes(32)), 0) for k in range(70)]),
+                          ("columns", [(f"m{k}", npy("(1, 100000)", "|i1", bytes(100_000)), 0) for k in range(90)])):
+        yield "npz", name, archive(members)
+    yield "f64", "a million channels", (bytes(8_000_000), '{"channels": 1000000, "rate_hz": 100}')
+    yield "f64", "names of a million channels", (bytes(800), '{"channels": [%s], "rate_hz": 100}'
+                                                 % ",".join(f'"c{k}"' for k in range(MILLION)))
+    mat = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
+    element = lambda kind, data: struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
+    matrix = lambda name, rows, columns, data: element(14, element(6, struct.pack("<II", 6, 0))
+                                                       + element(5, struct.pack("<ii", rows, columns))
+                                                       + element(1, name) + element(9, data))
+    squeeze = zlib.compressobj(1)
+    packed = squeeze.compress(struct.pack("<II", 14, 0xFFFFFFF0))
+    packed += b"".join(squeeze.compress(bytes(10 * MILLION)) for _ in range(100)) + squeeze.flush()
+    yield "mat", "zeros", mat + element(15, packed)
+    yield "mat", "many variables", mat + matrix(b"a", 4, 1, bytes(32)) * 70_000
+    yield "mat", "more than there is", mat + matrix(b"a", 2**31 - 1, 2**31 - 1, bytes(32))
+    yield "mat", "a million columns", mat + matrix(b"a", 1, MILLION, bytes(8 * MILLION))
+    nested = b""
+    for _ in range(20_000):
+        nested = struct.pack("<II", 14, len(nested)) + nested
+    yield "mat", "cells in cells", mat + nested[:8_000_000]
+    for fixture in ("log.h5", "groups.h5"):
+        data = (FIXTURES / "arrays" / fixture).read_bytes()
+        for factor in (3, 1000, 10**9):
+            for size in sorted({struct.unpack_from("<Q", data, at)[0] for at in range(0, len(data) - 7, 8)}):
+                if 100 <= size <= 100_000 and data.count(struct.pack("<Q", size)) <= 40:
+                    yield "h5", f"{fixture}: {size} values times {factor}", data.replace(
+                        struct.pack("<Q", size), struct.pack("<Q", min(size * factor, 2**62)))
+
+
+def archive(members):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as file:
+        for name, data, zeros in members:
+            with file.open(name + ".npy", "w", force_zip64=True) as member:
+                member.write(data)
+                for _ in range(min(zeros, 1_000_000_000) // 10_000_000):
+                    member.write(bytes(10_000_000))
+    return out.getvalue()
+
+
+def text(content):
+    return struct.pack("<I", len(content)) + content
+
+
+def record(kind, content):
+    return bytes([kind]) + struct.pack("<Q", len(content)) + content
+
+
+def topic(number, name, schema=b"float64 x\n"):
+    return (record(3, struct.pack("<H", number) + text(b"a/B") + text(b"ros2msg") + text(schema))
+            + record(4, struct.pack("<HH", number, number) + text(name) + text(b"cdr") + struct.pack("<I", 0)))
+
+
+def mcap(body):
+    return b"\x89MCAP0\r\n" + record(1, text(b"ros2") + text(b"")) + body
+
+
+def message(number, data):
+    return record(5, struct.pack("<HIQQ", number, 0, 10**18, 0) + data)
+
+
+def topic_files():
+    value = b"\0\1\0\0" + struct.pack("<d", 1.5)
+    yield "mcap", "as many topics as numbers", mcap(b"".join(topic(k, b"/t%d" % k) for k in range(1, 65_536)))
+    yield "mcap", "one topic said again", mcap(topic(1, b"/t") * 90_000)
+    yield "mcap", "long names", mcap(b"".join(topic(k, b"/" + b"t" * 90_000) for k in range(1, 100)))
+    yield "mcap", "deep message types", mcap(topic(1, b"/t", b"A0 a\n" + b"".join(
+        b"=" * 80 + b"\nMSG: a/A%d\nA%d b\nA%d c\n" % (k, k + 1, k + 1) for k in range(60))) + message(1, value))
+    yield "mcap", "arrays of arrays", mcap(topic(1, b"/t", b"A0[1000] a\n" + b"".join(
+        b"=" * 80 + b"\nMSG: a/A%d\nA%d[1000] b\n" % (k, k + 1) for k in range(6))
+        + b"=" * 80 + b"\nMSG: a/A6\nfloat64 x\n") + message(1, value))
+    yield "mcap", "long sequences", mcap(topic(1, b"/t", b"float64[] x\n")
+                                         + message(1, b"\0\1\0\0" + struct.pack("<I", 0xFFFFFFFF)) * 90_000)
+    yield "mcap", "many fields", mcap(topic(1, b"/t", b"".join(b"float64 x%d\n" % k for k in range(300_000)))
+                                      + message(1, value))
+    chunk = record(6, struct.pack("<QQQI", 0, 0, 200 << 20, 0) + text(b"zstd") + struct.pack("<Q", 4) + b"abcd")
+    index = record(8, struct.pack("<QQQQI", 0, 10, 30, len(chunk), 0) + struct.pack("<Q", 0) + text(b"zstd")
+                   + struct.pack("<QQ", 4, 200 << 20))
+    body = mcap(topic(1, b"/t") + chunk)
+    yield "mcap", "an index of large chunks", body + record(15, bytes(4)) + index * 100_000 + record(
+        2, struct.pack("<QQI", len(body) + 13, 0, 0)) + b"\x89MCAP0\r\n"
+    yield "mcap", "many large chunks", mcap(topic(1, b"/t") + chunk * 90_000)
+    fields = lambda *pairs: text(b"".join(text(name + b"=" + what) for name, what in pairs))
+    connection = lambda k, name, definition: (
+        fields((b"op", b"\7"), (b"conn", struct.pack("<I", k)), (b"topic", name))
+        + fields((b"type", b"a/B"), (b"md5sum", b"*"), (b"message_definition", definition)))
+    head = b"#ROSBAG V2.0\n" + fields((b"op", b"\3"), (b"index_pos", bytes(8)), (b"conn_count", bytes(4)),
+                                      (b"chunk_count", bytes(4))) + text(b" " * 8)
+    yield "bag", "many connections", head + b"".join(connection(k, b"/t%d" % k, b"float64 x") for k in range(70_000))
+    yield "bag", "large chunk", head + fields((b"op", b"\5"), (b"compression", b"bz2"), (b"size", struct.pack(
+        "<I", 0xFFFFFFFF))) + text(b"BZh9")
+    yield "bag", "many empty chunks", head + (fields((b"op", b"\5"), (b"compression", b"none"), (b"size", bytes(4)))
+                                              + text(b"")) * 120_000
+    with tempfile.TemporaryDirectory() as folder:
+        for name, topics, messages in (("many topics", 100_000, 4), ("many messages", 1, 100_000)):
+            path = pathlib.Path(folder) / f"{topics}.db3"
+            base = sqlite3.connect(path)
+            base.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT)")
+            base.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, "
+                         "data BLOB)")
+            base.executemany("INSERT INTO topics VALUES (?, ?, 'std_msgs/msg/Float64', 'cdr')",
+                             ((k, f"/t{k}") for k in range(1, topics + 1)))
+            base.executemany("INSERT INTO messages(topic_id, timestamp, data) VALUES (1, ?, ?)",
+                             ((10**18 + k * 10**7, value) for k in range(messages)))
+            base.commit()
+            base.close()
+            yield "db3", name, path.read_bytes()
+
+
+def flight_files():
+    begin = b"ULog\x01\x12\x35\x01" + bytes(8)
+    said = lambda kind, content: struct.pack("<HB", len(content), ord(kind)) + content
+    yield "ulg", "many formats", begin + b"".join(said("F", b"f%d:uint64_t timestamp;float x;" % k)
+                                                 for k in range(200_000))
+    fields_of = lambda k: b"".join(b"f%d[200] a%d;" % (k + 1, i) for i in range(20))
+    yield "ulg", "formats in formats", begin + b"".join(said("F", b"f%d:%s" % (k, fields_of(k))) for k in range(40)) + (
+        said("F", b"f40:uint64_t timestamp;") + said("A", bytes([0]) + struct.pack("<H", 0) + b"f0"))
+    yield "ulg", "large arrays", begin + said("F", b"f:uint64_t timestamp;float[2000000000] x;") + said(
+        "A", bytes([0]) + struct.pack("<H", 0) + b"f") + said("D", struct.pack("<H", 0) + bytes(60_000)) * 150
+    yield "ulg", "many subscriptions", begin + said("F", b"f:uint64_t timestamp;float x;") + b"".join(
+        said("A", bytes([k % 256]) + struct.pack("<H", k % 65536) + b"f") for k in range(500_000))
+    yield "ulg", "parameters", begin + said("P", b"\x07float a" + bytes(4)) * 700_000
+    yield "ulg", "nothing after the head", begin + bytes(9_000_000)
+    form = lambda kind, name: (b"\xa3\x95\x80" + bytes([kind, 89]) + name.ljust(4, b"\0") + b"Q".ljust(16, b"\0")
+                               + b"TimeUS".ljust(64, b"\0"))
+    yield "bin", "formats again and again", form(128, b"FMT") + form(200, b"A") * 100_000
+    yield "bin", "heads of messages only", form(200, b"A") + b"\xa3\x95\xc8" * 3_000_000
+
+
+def document_files():
+    head = "format: sensor-model\nversion: 1\nchannel: a\nunit: V\ndensity: two-sided\nrate_hz: 100\n"
+    yield "sensor.yaml", "many keys", ["model"], (head + "".join(f"k{k}: 1\n" for k in range(500_000))).encode()
+    yield "sensor.yaml", "deep", ["model"], (head + "white_noise: " + "[" * 1_000_000).encode()
+    yield "sensor.yaml", "long text", ["model"], (head + "note: " + "x" * 9_000_000).encode()
+    yield "sensor.yaml", "many lines of nothing", ["model"], (head + "\n" * 9_000_000).encode()
+    model = "model: {unit: m, white_noise: {value: 1}, density: two-sided}"
+    scene = ("format: scene\nversion: 1\nname: s\nsimulate: {{rate_hz: 100, samples: {}, truth: {{name: l, kind: sine, "
+             "amplitude: 1, frequency_hz: 1}}}}\nsensors:\n{}")
+    sensors = "".join(f"  - {{name: s{k}, {model}}}\n" for k in range(20_000))
+    yield "scene.yaml", "twenty thousand sensors", ["replay", "--explain"], scene.format(600, sensors).encode()
+    yield "scene.yaml", "more samples than there is time", ["replay", "--explain"], scene.format(
+        2**62, "".join(f"  - {{name: s{k}, {model}}}\n" for k in range(3))).encode()
+    for name, content in (("deep", b"[" * 9_000_000), ("many keys", b"{" + b",".join(
+            b'"k%d":1' % k for k in range(700_000)) + b"}"), ("many files", b'{"format":"characterization","files":['
+                                                              + b'"a",' * 2_000_000 + b'"b"]}')):
+        yield "json", name, ["report"], content
+
+
+def all_files():
+    for name, data in csv_files():
+        yield "csv", name, ["inspect"], data
+    for suffix, name, data in (*array_files(), *topic_files(), *flight_files()):
+        yield suffix, name, ["inspect"], data
+    yield from document_files()
+
+
+def serve():
+    """Runs what it is told, line by line: a process of its own, since a child begins with its parent's memory."""
+    for line in sys.stdin:
+        words = json.loads(line)
+        with tempfile.TemporaryFile() as said:
+            child = os.fork()
+            if child == 0:
+                resource.setrlimit(resource.RLIMIT_CPU, (30, 31))
+                null = os.open(os.devnull, os.O_RDWR)
+                for descriptor, target in ((0, null), (1, null), (2, said.fileno())):
+                    os.dup2(target, descriptor)
+                os.execv(words[0], words)
+            _, status, used = os.wait4(child, 0)
+            said.seek(0)
+            print(json.dumps([os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime, used.ru_maxrss / 1024,
+                              said.read().decode(errors="replace")]), flush=True)
+
+
+class Runner:
+    def __init__(self, program):
+        self.program = program
+        self.server = subprocess.Popen([sys.executable, __file__, "--serve"], stdin=subprocess.PIPE,
+                                       stdout=subprocess.PIPE, text=True)
+
+    def measured(self, words, path):
+        """Exit code, seconds of processor time, megabytes, what was said."""
+        print(json.dumps([self.program, words[0], str(path), *words[1:]]), file=self.server.stdin, flush=True)
+        return json.loads(self.server.stdout.readline())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=os.path.abspath)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--seconds", type=float, default=2)
+    parser.add_argument("--megabytes", type=float, default=256)
+    parser.add_argument("--verbose", action="store_true")
+    options = parser.parse_args()
+    runner = Runner(options.program)
+    count = wrong = 0
+    slowest = largest = (0, "")
+    with tempfile.TemporaryDirectory() as folder:
+        for suffix, name, words, data in all_files():
+            if options.only not in f"{suffix}: {name}":
+                continue
+            path = pathlib.Path(folder) / f"bomb.{suffix}"
+            data, sidecar = data if isinstance(data, tuple) else (data, None)
+            assert len(data) <= 10_500_000, (suffix, name, len(data))
+            path.write_bytes(data)
+            side = pathlib.Path(f"{path}.json")
+            if sidecar is not None:
+                side.write_text(sidecar)
+            code, seconds, megabytes, said = runner.measured(words, path)
+            side.unlink(missing_ok=True)
+            path.unlink()
+            count += 1
+            slowest, largest = max(slowest, (seconds, name)), max(largest, (megabytes, name))
+            faults = [fault for fault, there in (
+                (f"exit {code}", code not in (0, 2, 3, 4)), (f"{seconds:.1f} s", seconds > options.seconds),
+                (f"{megabytes:.0f} MB", megabytes > options.megabytes), ("internal error", "internal error" in said),
+                ("no error said", code > 0 and said.count(" error ") != 1)) if there]
+            wrong += bool(faults)
+            if faults or options.verbose:
+                print(f"{suffix}: {name} ({len(data) / 1e6:.1f} MB): {', '.join(faults) or 'well'}: exit {code}, "
+                      f"{seconds:.2f} s, {megabytes:.0f} MB, {said.strip()[-160:]!r}", flush=True)
+    print(f"{count} files, {wrong} beyond {options.seconds:g} s, {options.megabytes:g} MB or the contract; slowest "
+          f"{slowest[0]:.1f} s ({slowest[1]}), largest {largest[0]:.0f} MB ({largest[1]})")
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    serve() if sys.argv[1:] == ["--serve"] else main()
