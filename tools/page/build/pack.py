@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""The page of what was built: one file with everything inside.
+
+usage: pack.py BUILD OUTPUT     BUILD: the folder of a build by tools/page/build/toolchain.cmake
+"""
+import base64
+import gzip
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+PAGE = HERE.parent
+ROOT = PAGE.parent.parent
+SCRIPTS = ["elements", "words", "zip", "pool", "items", "inspection", "options", "uses", "page"]
+NOT_INSIDE = {"glog", "SuiteSparse", "HDF5", "OpenSSL", "oneTBB", "pybind11", "Cairo", "fontconfig"}
+
+
+def said_by_program(build, *words):
+    return subprocess.run(["node", "--no-experimental-fetch", str(HERE / "run.js"), str(build), *words], check=True,
+                          capture_output=True, text=True).stdout
+
+
+def licences():
+    """Rows of docs/third-party.md of what is in the page."""
+    rows = []
+    for line in (ROOT / "docs/third-party.md").read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        name = cells[0]
+        if line.startswith("|") and len(cells) > 2 and cells[1].startswith("`lib") or name.startswith("JSON for"):
+            if not any(name.startswith(other) for other in NOT_INSIDE):
+                rows.append(f"{re.sub(r' [(]headers[)]', '', name)} ({cells[2]})")
+    return ", ".join(rows)
+
+
+def formats(usage):
+    """The words of --format."""
+    verb = next(verb for verb in usage["verbs"] if verb["name"] == "inspect")
+    words = next(option["words"] for option in verb["options"] if "--format" in option["flags"])
+    return "Formats: " + ", ".join(word for word in words if word != "auto") + ", packed ones too."
+
+
+def filled(text, values):
+    return re.sub(r"@([A-Z]+)@", lambda mark: values[mark[1]], text)
+
+
+def inside_script(text):
+    """What an element of a script may hold."""
+    return text.replace("</", "<\\/")
+
+
+def main():
+    build, output = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    script = "\n".join((PAGE / f"script/{name}.js").read_text().replace('"use strict";\n', "", 1) for name in SCRIPTS)
+    worker = (build / "tools/sensorchar.js").read_text() + "\n" + (PAGE / "script/worker.js").read_text()
+    usage = said_by_program(build, "--generate", "json")
+    packed = gzip.compress((build / "tools/sensorchar.wasm").read_bytes(), 9, mtime=0)
+    page = filled((PAGE / "page.html").read_text(), {
+        "STYLE": (ROOT / "libchar/report/page.css").read_text() + (PAGE / "page.css").read_text(),
+        "FORMATS": formats(json.loads(usage)),
+        "LICENCES": licences(),
+        "USAGE": inside_script(usage),
+        "TARGETS": inside_script(said_by_program(build, "model", "--list", "--json")),
+        "WORKER": inside_script(worker),
+        "SCRIPT": inside_script('"use strict";\n' + script),
+        "MODULE": base64.b64encode(packed).decode(),
+    })
+    output.write_text(page)
+    print(f"{output}: {len(page) / 1e6:.2f} MB")
+
+
+if __name__ == "__main__":
+    main()

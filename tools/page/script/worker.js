@@ -1,0 +1,91 @@
+// Runs commands of the program in a worker: an instance for each, so that nothing of one is left for the next.
+//
+// In:  {module}: the compiled program, once
+//      {id, words, logs: [{name, file}], files: [{name, bytes}]}: a command; logs are read through their handles, never copied
+// Out: {id, progress} while it works, then {id, code, out, err, files: [{name, bytes}]}, or {id, failed}
+"use strict";
+const FOLDER = "/work", LOGS = "/logs";
+let compiled = null;
+
+/** Bytes of a stream of the program, as they come. */
+class Said {
+  constructor(line) {
+    this.bytes = [];
+    this.line = line;
+  }
+  push(byte) {
+    if (byte === null) return;
+    this.bytes.push(byte);
+    if (this.line && byte === 13 && this.bytes.length > 1) this.line(this.text());
+  }
+  text() {
+    return new TextDecoder().decode(new Uint8Array(this.bytes));
+  }
+}
+
+/** What the program drew over itself: the last text of each line. */
+const shown = text => text.split("\n").map(line => line.replace(/\x1b\[K/g, "").split("\r").pop()).join("\n");
+
+function folders(FS, path) {
+  const parts = path.split("/").slice(0, -1);
+  for (let i = 1; i <= parts.length; ++i) {
+    const folder = parts.slice(0, i).join("/");
+    if (folder && !FS.analyzePath(folder).exists) FS.mkdir(folder);
+  }
+}
+
+function mount(program, logs, files) {
+  const { FS } = program;
+  FS.mkdir(FOLDER);
+  FS.mkdir(LOGS);
+  FS.mount(FS.filesystems.WORKERFS, { blobs: logs.map(({ name, file }) => ({ name, data: file })) }, LOGS);
+  for (const top of new Set(logs.map(({ name }) => name.split("/")[0]))) FS.symlink(`${LOGS}/${top}`, `${FOLDER}/${top}`);
+  for (const { name, bytes } of files) {
+    folders(FS, `${FOLDER}/${name}`);
+    FS.writeFile(`${FOLDER}/${name}`, bytes);
+  }
+  FS.chdir(FOLDER);
+}
+
+/** Files below `folder` that were not there before, or are other ones. */
+function written(FS, before, folder = FOLDER) {
+  const found = [];
+  for (const name of FS.readdir(folder)) {
+    if (name === "." || name === "..") continue;
+    const path = `${folder}/${name}`, mode = FS.lstat(path).mode;
+    if (FS.isLink(mode)) continue;
+    if (FS.isDir(mode)) found.push(...written(FS, before, path));
+    else if (before.get(path) !== FS.lookupPath(path).node.contents)
+      found.push({ name: path.slice(FOLDER.length + 1), bytes: FS.readFile(path) });
+  }
+  return found;
+}
+
+async function run({ id, words, logs, files }) {
+  const out = new Said(), err = new Said(text => postMessage({ id, progress: shown(text).split("\n").pop() }));
+  const program = await createProgram({
+    noInitialRun: true,
+    said: (stream, byte) => (stream === 1 ? out : err).push(byte),
+    instantiateWasm(imports, take) {
+      WebAssembly.instantiate(compiled, imports).then(instance => take(instance, compiled));
+      return {};
+    },
+  });
+  mount(program, logs, files);
+  const before = new Map(files.map(({ name }) => [`${FOLDER}/${name}`, program.FS.lookupPath(`${FOLDER}/${name}`).node.contents]));
+  const code = program.callMain(words);
+  return { id, code, out: out.text(), err: shown(err.text()), files: written(program.FS, before), heap: program.HEAPU8.length };
+}
+
+onmessage = async ({ data }) => {
+  if (data.module) {
+    compiled = data.module;
+    return;
+  }
+  try {
+    const result = await run(data);
+    postMessage(result, result.files.map(file => file.bytes.buffer));
+  } catch (error) {
+    postMessage({ id: data.id, failed: String(error && error.message || error) });
+  }
+};
