@@ -14,3 +14,7 @@ Module.preRun.push(() => {
   Object.assign(TTY.default_tty_ops, say(1));
   Object.assign(TTY.default_tty1_ops, say(2));
 });
+// Under node too, the end of a command is not the end of everything.
+Module.quit = (status, error) => {
+  throw error;
+};

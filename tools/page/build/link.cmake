@@ -17,3 +17,5 @@ target_link_options(
           -lworkerfs.js
           -lnodefs.js)
 set_property(TARGET sensorchar APPEND PROPERTY LINK_DEPENDS "${PROJECT_SOURCE_DIR}/tools/page/program.js")
+# emcc's own scripts do not find acorn otherwise.
+set_property(TARGET sensorchar PROPERTY RULE_LAUNCH_LINK "\"${CMAKE_COMMAND}\" -E env NODE_PATH=/usr/share/nodejs")
