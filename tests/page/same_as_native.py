@@ -23,8 +23,8 @@ LIMIT_S = 300
 NEAR = 1e-6
 # What says who ran it and how long it took: steps of a descent as well.
 OF_THE_RUN = {"tool", "command", "measured", "seconds", "files_sha256", "iterations"}
-# Exact ramps and steps: what is left of them is the rounding of sines and logarithms, and so are the coefficients. Their
-# ratings are compared.
+# Exact ramps and steps: what is left of them is the rounding of sines and logarithms, and so are the
+# coefficients. Their ratings are compared.
 ROUNDING = {"jazzy.db3", "085_jitter.csv"}
 LOGS = ["imu_at_rest.csv", "arrays/*.npz", "arrays/*.h5", "arrays/*.mat", "arrays/*.imu", "flight/*.ulg",
         "flight/*.bin", "npy/*.npy", "packed/table.csv.*", "ros/*.db3", "ros/*.mcap", "ros/*.bag",
@@ -93,7 +93,7 @@ def differences(a, b, where="", width=None):
         elif abs(a - b) > tolerance(a, b, width, where):
             yield f"{where}: {a!r} and {b!r}"
     elif isinstance(a, str) and isinstance(b, str):
-        if not same_sentence(a, b):
+        if a != b and not same_sentence(a, b):
             yield f"{where}: {a!r} and {b!r}"
     elif a != b:
         yield f"{where}: {a!r} and {b!r}"

@@ -3,7 +3,6 @@
 
 usage: pack.py BUILD OUTPUT     BUILD: the folder of a build by tools/page/build/toolchain.cmake
 """
-import base64
 import gzip
 import json
 import pathlib
@@ -46,6 +45,24 @@ def filled(text, values):
     return re.sub(r"@([A-Z]+)@", lambda mark: values[mark[1]], text)
 
 
+REPLACED = [0x00, 0x0D, 0x3C]  # what the text of a script may not have, or would change: NUL, CR, <
+
+
+def seven_bits(data):
+    """Bytes as text of 17 % more of them (base64: 33 %): 7 bits a character, U+0080 and on in place of REPLACED."""
+    table = [chr(0x80 + REPLACED.index(code)) if code in REPLACED else chr(code) for code in range(128)]
+    characters = []
+    value = held = 0
+    for byte in data:
+        value = value << 8 | byte
+        held += 8
+        while held >= 7:
+            held -= 7
+            characters.append(table[value >> held])
+            value &= (1 << held) - 1
+    return "".join(characters) + (table[value << (7 - held)] if held else "")
+
+
 def inside_script(text):
     """What an element of a script may hold."""
     return text.replace("</", "<\\/")
@@ -65,10 +82,10 @@ def main():
         "TARGETS": inside_script(said_by_program(build, "model", "--list", "--json")),
         "WORKER": inside_script(worker),
         "SCRIPT": inside_script('"use strict";\n' + script),
-        "MODULE": base64.b64encode(packed).decode(),
+        "MODULE": seven_bits(packed),
     })
-    output.write_text(page)
-    print(f"{output}: {len(page) / 1e6:.2f} MB")
+    output.write_bytes(page.encode())
+    print(f"{output}: {output.stat().st_size / 1e6:.2f} MB")
 
 
 if __name__ == "__main__":

@@ -299,9 +299,25 @@ function listen() {
   });
 }
 
+/** The bytes of a text of 7 bits a character (tools/page/build/pack.py: seven_bits). */
+function fromSevenBits(text) {
+  const replaced = [0x00, 0x0d, 0x3c], bytes = new Uint8Array(Math.floor(text.length * 7 / 8));
+  let value = 0, held = 0, at = 0;
+  for (let i = 0; i < text.length; ++i) {
+    const code = text.charCodeAt(i);
+    value = value << 7 | (code < 0x80 ? code : replaced[code - 0x80]);
+    held += 7;
+    if (held < 8) continue;
+    held -= 8;
+    bytes[at++] = value >> held;
+    value &= (1 << held) - 1;
+  }
+  return bytes;
+}
+
 /** The program, unpacked and compiled while it is unpacked. */
 async function compiled() {
-  const text = byId("module").textContent, packed = Uint8Array.from(atob(text), character => character.charCodeAt(0));
+  const packed = fromSevenBits(byId("module").textContent);
   byId("module").remove();
   const bytes = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   return WebAssembly.compileStreaming(new Response(bytes, { headers: { "Content-Type": "application/wasm" } }));
