@@ -4,7 +4,7 @@
 //      {id, words, logs: [{name, file}], files: [{name, bytes}]}: a command; logs are read through their handles, never copied
 // Out: {id, progress} while it works, then {id, code, out, err, files: [{name, bytes}]}, or {id, failed}
 "use strict";
-const FOLDER = "/work", LOGS = "/logs";
+const FOLDER = "/work", NOTHING = "/none";
 let compiled = null;
 
 /** Bytes of a stream of the program, as they come. */
@@ -36,10 +36,16 @@ function folders(FS, path) {
 
 function mount(program, logs, files) {
   const { FS } = program;
+  const { WORKERFS } = FS.filesystems;
   FS.mkdir(FOLDER);
-  FS.mkdir(LOGS);
-  FS.mount(FS.filesystems.WORKERFS, { blobs: logs.map(({ name, file }) => ({ name, data: file })) }, LOGS);
-  for (const top of new Set(logs.map(({ name }) => name.split("/")[0]))) FS.symlink(`${LOGS}/${top}`, `${FOLDER}/${top}`);
+  FS.mkdir(NOTHING);
+  FS.mount(WORKERFS, { files: [] }, NOTHING); // makes its reader
+  // Its files stand among those that are written: no links, which some libraries follow with suspicion (HDF5).
+  for (const { name, file } of logs) {
+    folders(FS, `${FOLDER}/${name}`);
+    const at = name.lastIndexOf("/"), parent = FS.lookupPath(`${FOLDER}/${name.slice(0, Math.max(at, 0))}`).node;
+    WORKERFS.createNode(parent, name.slice(at + 1), WORKERFS.FILE_MODE, 0, file, file.lastModified ? new Date(file.lastModified) : new Date());
+  }
   for (const { name, bytes } of files) {
     folders(FS, `${FOLDER}/${name}`);
     FS.writeFile(`${FOLDER}/${name}`, bytes);
@@ -52,10 +58,9 @@ function written(FS, before, folder = FOLDER) {
   const found = [];
   for (const name of FS.readdir(folder)) {
     if (name === "." || name === "..") continue;
-    const path = `${folder}/${name}`, mode = FS.lstat(path).mode;
-    if (FS.isLink(mode)) continue;
-    if (FS.isDir(mode)) found.push(...written(FS, before, path));
-    else if (before.get(path) !== FS.lookupPath(path).node.contents)
+    const path = `${folder}/${name}`, { contents } = FS.lookupPath(path).node;
+    if (FS.isDir(FS.lstat(path).mode)) found.push(...written(FS, before, path));
+    else if (!(contents instanceof Blob) && before.get(path) !== contents)
       found.push({ name: path.slice(FOLDER.length + 1), bytes: FS.readFile(path) });
   }
   return found;
