@@ -1,8 +1,8 @@
 // The page: takes what is dropped, asks the program what it is, offers uses, runs their commands, shows what came of it.
 "use strict";
 
-const USAGE = JSON.parse(byId("usage").textContent);
-const TARGETS = JSON.parse(byId("targets").textContent).targets;
+let USAGE = null; // what the program can be told (--generate json)
+let TARGETS = []; // of model --to
 const CODE = /\berror (E\d{4})\b/;
 
 const bench = {
@@ -315,23 +315,30 @@ function fromSevenBits(text) {
   return bytes;
 }
 
-/** The program, unpacked and compiled while it is unpacked. */
-async function compiled() {
-  const packed = fromSevenBits(byId("module").textContent);
-  byId("module").remove();
-  const bytes = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compileStreaming(new Response(bytes, { headers: { "Content-Type": "application/wasm" } }));
+/** What an element of the page has packed inside. */
+function unpacked(id, type) {
+  const bytes = fromSevenBits(byId(id).textContent);
+  byId(id).remove();
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")), { headers: { "Content-Type": type } });
+}
+
+/** The program, compiled while it is unpacked. */
+async function makePool() {
+  const [texts, module] = await Promise.all([unpacked("texts", "application/json").json(), WebAssembly.compileStreaming(unpacked("module", "application/wasm"))]);
+  USAGE = texts.usage;
+  TARGETS = texts.targets.targets;
+  return new Pool(texts.worker, module);
 }
 
 async function begin() {
-  byId("version").textContent = USAGE.program_version.replace(/^sensorchar /, "");
   listen();
   try {
-    pool = new Pool(byId("worker").textContent, await compiled());
+    pool = await makePool();
   } catch (error) {
     showError(`This browser cannot run the program: ${error.message}. It needs Chromium or Edge 95, Firefox 113, Safari 16.4 or a newer one.`);
     return setState("error", "");
   }
+  byId("version").textContent = USAGE.program_version.replace(/^sensorchar /, "");
   setState("ready", "Ready.");
 }
 
