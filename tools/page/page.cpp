@@ -32,7 +32,7 @@ std::string installed_page() {
   for (const fs::path& place : {folder / "../share/sensorchar" / kPage, folder / kPage})
     if (fs::is_regular_file(place, none)) return place.string();
   throw libchar::input_error("E0101", kPage)
-      .says("the page does not stand where this program is installed")
+      .says("the page is not where this program is installed")
       .hint("install the package sensorchar again");
 }
 
