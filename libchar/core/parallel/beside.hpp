@@ -1,5 +1,5 @@
 #pragma once
-// A piece of work with a result, beside the caller.
+// A piece of work with a result, in a thread next to the caller.
 
 #include <future>
 #include <system_error>
@@ -8,7 +8,7 @@
 
 namespace libchar::parallel {
 
-/// Begins beside the caller; where no thread is to be had, when its result is asked for.
+/// Begins in a thread next to the caller; where no thread is to be had, when its result is asked for.
 template <class Work>
 auto beside(const Work& work) {
   if (has_threads()) {
