@@ -1,12 +1,12 @@
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <exception>
 #include <span>
 
 #include "help/flag_names.hpp"
 #include "help/generate.hpp"
-#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/parallel/thread_limit.hpp"
+#include "libchar/core/process/free_memory.hpp"
 #include "libchar/core/process/version.hpp"
 #include "verb.hpp"
 
@@ -16,10 +16,7 @@ constexpr std::size_t kPageColumns = 100;  ///< of help that is not for a termin
 
 int main(int argc, char** argv) {
   using namespace sensorchar;
-  // Blocks of a few megabytes come and go all the time: kept instead of given back to the system,
-  // they need no new pages.
-  mallopt(M_MMAP_THRESHOLD, 256 << 20);
-  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+  libchar::detail::keep_freed_blocks();
   take_closed_streams();
   install_signal_handlers();
   std::set_terminate(end_in_a_sentence);

@@ -7,8 +7,6 @@
 
 #include "libchar/allan/allan_covariance.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -17,6 +15,7 @@
 
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/kernels/lag_sum.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 
 namespace libchar {
@@ -134,7 +133,7 @@ AllanCovariance::AllanCovariance(const AllanCurve& curve) : dt_s_(curve.dt_s) {
     for (std::size_t j = 0; j <= i; ++j) pairs.emplace_back(i, j);
   }
   products_.resize(pairs.size());
-  tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
+  parallel::for_each(0, pairs.size(), [&](std::size_t k) {
     Side a = side_of(curve, curve.points[pairs[k].first]),
          b = side_of(curve, curve.points[pairs[k].second]);
     if (a.stride > b.stride) std::swap(a, b);

@@ -22,9 +22,6 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -37,7 +34,8 @@
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/detail/kernels/present_points.hpp"
 #include "libchar/core/numeric/present.hpp"
-#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/parallel/parallel.hpp"
+#include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
@@ -225,7 +223,7 @@ Totals total_over(const AnchoredPhase& phase,
                   const std::vector<Starts>& ranges) {
   const std::uint64_t pieces = phase.points / kPiece + 1;
   std::vector<Totals> part(pieces);
-  tbb::parallel_for(std::uint64_t{0}, pieces, [&](std::uint64_t piece) {
+  parallel::for_each(0, pieces, [&](std::size_t piece) {
     const std::uint64_t begin = piece * kPiece, end = begin + kPiece;
     auto range = std::partition_point(
         ranges.begin(), ranges.end(), [&](const Starts& r) { return r.end <= begin; });
@@ -335,7 +333,7 @@ std::vector<AllanPoint> points_of_phase(const AnchoredPhase& phase,
                                         DataKind kind,
                                         const AllanCurve& curve) {
   std::vector<AllanPoint> points(factors.size());
-  tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
+  parallel::for_each(0, factors.size(), [&](std::size_t k) {
     const std::uint64_t m = factors[k];
     AllanPoint asked;
     asked.m = m;
@@ -434,8 +432,8 @@ AllanCurve allan_deviation(std::span<const double> record,
   if (curve.used < f.span(1)) too_short(f, curve.samples);
   const std::uint64_t reach = total && !factors.empty() ? factors.back() : 0;
   const int cores = processors_given();
-  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
-  arena.execute([&] {
+  parallel::Threads arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
+  arena.run([&] {
     if (family)
       return fill_points(points_of_family(used, f, options, factors, curve), factors, curve);
     if (curve.missing > 0 && options.data == DataKind::rate && of_window_means(f))

@@ -4,10 +4,10 @@
 #include "libchar/allan/dynamic_deviation.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 
 namespace libchar {
@@ -44,7 +44,7 @@ DynamicDeviation dynamic_deviation(std::span<const double> record,
   out.type = options.type;
   out.windows.resize((record.size() - window) / step + 1);
   std::vector<char> empty(out.windows.size());
-  tbb::parallel_for(std::size_t{0}, out.windows.size(), [&](std::size_t k) {
+  parallel::for_each(0, out.windows.size(), [&](std::size_t k) {
     const std::uint64_t from = k * step;
     DynamicWindow& result = out.windows[k];
     result.from_s = static_cast<double>(from) * dt_s;

@@ -62,7 +62,7 @@ struct EstimatorAccuracy {
 struct CharacterizationBench {
   BenchSignal signal;
   std::uint64_t seed = 1;
-  std::size_t records = 0;
+  std::uint64_t records = 0;
   std::vector<EstimatorAccuracy> methods;
   std::vector<std::string> notes;
 };

@@ -1,6 +1,7 @@
 #pragma once
 // A measured figure with what is known of it, and the order statistics and means that make one.
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -14,7 +15,7 @@ struct Figure {
   /// about 95 %; infinite on a side where the values are too few to say
   Interval ci95 = {-std::numeric_limits<double>::infinity(),
                    std::numeric_limits<double>::infinity()};
-  std::size_t count = 0;  ///< values behind it
+  std::uint64_t count = 0;  ///< values behind it
 };
 
 /// Median of independent values and its distribution-free interval: the order statistics between

@@ -50,9 +50,9 @@ struct FusionBenchScene {
   std::string name, file;
   std::string yardstick;  ///< "optimal fixed weights", or "best of the methods" without a reference
   std::uint64_t instants = 0;
-  std::size_t sensors = 0, inputs = 0;
+  std::uint64_t sensors = 0, inputs = 0;
   bool simulated = false;
-  std::size_t runs = 0;
+  std::uint64_t runs = 0;
   bool pooled = false;  ///< one of the most frequent kind: so many true inputs, or a tilt
 };
 

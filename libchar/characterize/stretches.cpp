@@ -1,8 +1,6 @@
 #include "libchar/characterize/stretches.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +15,7 @@
 #include "libchar/characterize/settings.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/process/free_memory.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/core/refusal.hpp"
@@ -257,7 +256,7 @@ void take_channels(const std::string& path,
                         channels),
               state.log);
     const bool last = leaf + 1 == leaves;
-    tbb::parallel_for(std::size_t{0}, stages.size(), [&](std::size_t c) {
+    parallel::for_each(0, stages.size(), [&](std::size_t c) {
       trees[c].add({0,
                     leaf,
                     last && leaf == 0 ? kept_leaf(std::move(read.channels[c]))
@@ -321,8 +320,7 @@ void characterize_stretch(const std::string& path,
   state.head = {identity, settings_digest(options), range, samples, 0, channels};
   const CharacterizeOptions chosen = in_samples(state.log, options);
   CharacterizeWorkspace workspace;
-  tbb::task_arena arena(options.reading.threads > 0 ? options.reading.threads
-                                                    : tbb::task_arena::automatic);
+  parallel::Threads arena(options.reading.threads);
   const std::uint64_t leaves = range.end_leaf - range.first_leaf;
   for (std::size_t first = 0; first < channels; first += kAtOnce) {
     const ChannelRange few = {first, std::min(channels, first + kAtOnce)};
@@ -331,7 +329,7 @@ void characterize_stretch(const std::string& path,
       progress.update(static_cast<double>(done) / static_cast<double>(channels * leaves),
                       "reading " + path);
     };
-    arena.execute([&] { take_channels(path, chosen, few, state, workspace, sink, at); });
+    arena.run([&] { take_channels(path, chosen, few, state, workspace, sink, at); });
     give_back_free_memory();
   }
 }

@@ -40,7 +40,7 @@ endif()
 # What stands between a defect and an attacker's log (docs/security.md): for the library and the programs, not for tests. The
 # sanitizers have their own.
 add_library(libchar_hardening INTERFACE)
-if(NOT LIBCHAR_SANITIZE AND NOT LIBCHAR_FUZZ)
+if(NOT LIBCHAR_SANITIZE AND NOT LIBCHAR_FUZZ AND NOT EMSCRIPTEN)
   target_compile_options(
     libchar_hardening INTERFACE -fstack-protector-strong -fstack-clash-protection -fcf-protection
                                 $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>) # needs optimization

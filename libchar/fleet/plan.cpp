@@ -1,7 +1,6 @@
 #include "libchar/fleet/plan.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +22,7 @@
 #include "libchar/core/file/folder_lock.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
@@ -93,7 +93,7 @@ std::vector<LookedAt> look_at_all(const Manifest& manifest, bool by_channel, Pro
   for (std::size_t first = 0; first < out.size(); first += kAtOnce) {
     progress.update(static_cast<double>(first) / static_cast<double>(out.size()),
                     "looking into the logs");
-    tbb::parallel_for(first, std::min(out.size(), first + kAtOnce), [&](std::size_t d) {
+    parallel::for_each(first, std::min(out.size(), first + kAtOnce), [&](std::size_t d) {
       const FleetDevice& device = manifest.devices[d];
       out[d] = look_at(device, manifest.options[device.options], by_channel);
     });
@@ -526,7 +526,7 @@ void write_plan(const FleetPlan& plan, const fs::path& folder) {
   for (const PlannedDevice& one : plan.devices)
     text += with_valid_text(device_json(one)).dump() + "\n";
   std::vector<std::string> lines(plan.units.size());
-  tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t k) {
+  parallel::for_each(0, lines.size(), [&](std::size_t k) {
     lines[k] = unit_text(plan.units[k]) + "\n";
     write_task(folder / task_file(k), lines[k]);
   });

@@ -1,12 +1,11 @@
 #include "libchar/log/inspection.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/gravity.hpp"
@@ -23,11 +22,11 @@ class Meters final : public BlockSink {
 
   void begin(const LogInfo& so_far) override {
     meters_.resize(so_far.channels.size());
-    arena_.initialize(threads_beside_reading(so_far, threads_));
+    arena_.limit_to(threads_beside_reading(so_far, threads_));
   }
   void block(const SampleBlock& samples) override {
-    arena_.execute([&] {
-      tbb::parallel_for(std::size_t{0}, meters_.size(), [&](std::size_t c) {
+    arena_.run([&] {
+      parallel::for_each(0, meters_.size(), [&](std::size_t c) {
         meters_[c].push({samples.channels[c], samples.rows});
       });
     });
@@ -36,7 +35,7 @@ class Meters final : public BlockSink {
 
  private:
   int threads_;
-  tbb::task_arena arena_;
+  parallel::Threads arena_;
   std::vector<QualityMeter> meters_;
 };
 

@@ -3,7 +3,6 @@
 #include "libchar/lot/fleet_lot.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
@@ -89,7 +89,7 @@ void search_outliers(const Fleet& fleet, double probability, std::vector<Statist
                      enough_count(counts.counted, counts.members);
     count += s.lot.searched;
   }
-  tbb::parallel_for(std::size_t{0}, statistics.size(), [&](std::size_t i) {
+  parallel::for_each(0, statistics.size(), [&](std::size_t i) {
     if (statistics[i].lot.searched)
       add_outliers(fleet, probability / static_cast<double>(count), statistics[i]);
   });

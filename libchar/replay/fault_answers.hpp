@@ -14,7 +14,7 @@ namespace libchar {
 
 /// A stretch during which an algorithm had a sensor out.
 struct FoundFault {
-  std::size_t sensor = 0;
+  std::uint64_t sensor = 0;
   std::string kind;  ///< the rule that raised it
   double from_s = 0;
   std::optional<double> to_s;  ///< none: out until the end
@@ -22,7 +22,7 @@ struct FoundFault {
 
 /// How an algorithm dealt with one of the faults that the scene knows.
 struct FaultAnswer {
-  std::size_t fault = 0;          ///< index into ReplayResult::faults
+  std::uint64_t fault = 0;        ///< index into ReplayResult::faults
   std::optional<double> found_s;  ///< delay from the fault's beginning; none: never while it lasted
   std::optional<double> returned_s;  ///< delay from the fault's end until the sensor was used again
 };

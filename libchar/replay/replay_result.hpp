@@ -198,7 +198,7 @@ struct ReplayWork {
 struct DetectionAt {
   double false_alarm_s = 0;
   std::vector<FaultAnswer> answers;
-  std::size_t alarms_without_fault = 0;
+  std::uint64_t alarms_without_fault = 0;
 };
 
 /// What a result and its report say alike.

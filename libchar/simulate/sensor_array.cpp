@@ -5,15 +5,14 @@
 #include "libchar/simulate/sensor_array.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 
-#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/parallel/parallel.hpp"
+#include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/simulate/detail/sensor_chain.hpp"
@@ -228,11 +227,10 @@ std::span<const std::span<const double>> ArraySimulator::next(std::size_t wanted
   if (s.threads == 1 || s.chains.size() == 1) {
     for (std::size_t i = 0; i < s.chains.size(); ++i) s.run_sensor(i, rows);
   } else {
-    tbb::task_arena arena(s.threads > 0 ? std::min(s.threads, processors_given())
-                                        : processors_given());
-    arena.execute([&] {
-      tbb::parallel_for(
-          std::size_t{0}, s.chains.size(), [&](std::size_t i) { s.run_sensor(i, rows); });
+    parallel::Threads arena(s.threads > 0 ? std::min(s.threads, processors_given())
+                                          : processors_given());
+    arena.run([&] {
+      parallel::for_each(0, s.chains.size(), [&](std::size_t i) { s.run_sensor(i, rows); });
     });
   }
   s.finish_truth(rows);

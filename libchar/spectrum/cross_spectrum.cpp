@@ -7,12 +7,12 @@
 #include "libchar/spectrum/cross_spectrum.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segment_choice.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
@@ -110,7 +110,7 @@ CrossSpectrum cross_spectrum(std::span<const double> x,
   const std::uint64_t count = layout.count(x.size());
   std::vector<PairSums> groups((count + layout.group - 1) / layout.group,
                                PairSums(layout.segment / 2 + 1));
-  tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+  parallel::for_each(0, groups.size(), [&](std::size_t g) {
     groups[g] = pair_sums(x,
                           y,
                           layout,

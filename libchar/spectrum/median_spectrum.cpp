@@ -12,10 +12,10 @@
 #include "libchar/spectrum/median_spectrum.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segment_choice.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
@@ -72,7 +72,7 @@ Spectrum median_welch(std::span<const double> record, double rate_hz, const Welc
         .hint("give less `overlap`, or read less with `from_s`, `to_s`");
   const std::vector<double> window = window_values(options.window, layout.segment);
   std::vector<std::vector<double>> powers(segments);
-  tbb::parallel_for(std::uint64_t{0}, segments, [&](std::uint64_t i) {
+  parallel::for_each(0, segments, [&](std::size_t i) {
     Periodogram periodogram(options, window);
     std::vector<double> power(bins, 0.0);
     if (periodogram.add(record.data() + i * layout.hop, power.data())) powers[i] = std::move(power);
@@ -83,7 +83,7 @@ Spectrum median_welch(std::span<const double> record, double rate_hz, const Welc
   const auto used = static_cast<double>(powers.size());
   // What `Average` divides by their number is a sum.
   std::vector<double> sum(bins);
-  tbb::parallel_for(std::uint64_t{0}, bins, [&](std::uint64_t k) {
+  parallel::for_each(0, bins, [&](std::size_t k) {
     std::vector<double> of_bin;
     for (const auto& power : powers) of_bin.push_back(power[k]);
     sum[k] = median_of(of_bin) / expected_median(powers.size()) * used;

@@ -3,10 +3,10 @@
 #include "libchar/spectrum/spectrogram.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 
@@ -58,7 +58,7 @@ Spectrogram spectrogram(std::span<const double> record,
   for (std::size_t i = 0; i < out.value.size(); ++i)
     out.time_s.push_back(
         (static_cast<double>(i * layout.hop) + static_cast<double>(layout.segment) / 2) / rate_hz);
-  tbb::parallel_for(std::size_t{0}, out.value.size(), [&](std::size_t i) {
+  parallel::for_each(0, out.value.size(), [&](std::size_t i) {
     Periodogram periodogram(options, window);
     std::vector<double> power(bins, 0.0);
     if (!periodogram.add(record.data() + i * layout.hop, power.data())) return;

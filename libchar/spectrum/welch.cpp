@@ -4,17 +4,18 @@
 #include "libchar/spectrum/welch.hpp"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/parallel/parallel.hpp"
+#include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
@@ -64,6 +65,32 @@ struct Worker {
   }
 };
 
+/// As many as are at work at once.
+class Workers {
+ public:
+  explicit Workers(std::function<std::unique_ptr<Worker>()> make) : make_(std::move(make)) {}
+  void lend(const auto& work) {
+    std::unique_ptr<Worker> worker = idle();
+    if (!worker) worker = make_();
+    work(*worker);
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(worker));
+  }
+
+ private:
+  std::unique_ptr<Worker> idle() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return nullptr;
+    auto worker = std::move(idle_.back());
+    idle_.pop_back();
+    return worker;
+  }
+
+  std::function<std::unique_ptr<Worker>()> make_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Worker>> idle_;
+};
+
 // The segments [index * group, (index + 1) * group) of the record.
 Group sum_of_group(std::uint64_t index,
                    std::span<const double> record,
@@ -101,7 +128,7 @@ void take(Group&& group, Average& average) {
   for (const char used : group.used) average.note_segment(used != 0);
 }
 
-// Never more than the machine has: it would not be faster, and TBB would say so on stderr.
+// Never more than the machine has: it would not be faster.
 std::uint64_t threads_of(const WelchOptions& options) {
   const int most = processors_given();
   return static_cast<std::uint64_t>(options.threads > 0 ? std::min(options.threads, most) : most);
@@ -143,25 +170,29 @@ void add_groups(std::span<const double> record,
       take(sum_of_group(g, record, layout, worker), average);
     return;
   }
-  tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
+  Workers workers(
       [&] { return std::make_unique<Worker>(cutting.options, layout, window, memory); });
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
-    std::uint64_t next = 0;
-    tbb::parallel_pipeline(
-        2 * static_cast<std::size_t>(threads),
-        tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
-                                              [&](tbb::flow_control& control) -> std::uint64_t {
-                                                if (next == groups) control.stop();
-                                                return next++;
-                                              }) &
-            tbb::make_filter<std::uint64_t, Group>(tbb::filter_mode::parallel,
-                                                   [&](std::uint64_t g) {
-                                                     return sum_of_group(
-                                                         g, record, layout, *workers.local());
-                                                   }) &
-            tbb::make_filter<Group, void>(tbb::filter_mode::serial_in_order,
-                                          [&](Group group) { take(std::move(group), average); }));
+  const std::size_t most = 2 * static_cast<std::size_t>(threads);
+  std::vector<Group> places(most);  // one is free again when the group `most` before has been taken
+  std::uint64_t next = 0;
+  const auto group_of = [](void* group) -> Group& { return *static_cast<Group*>(group); };
+  parallel::Threads(threads).run([&] {
+    parallel::in_order(most,
+                       {.read = [&]() -> void* {
+                          if (next == groups) return nullptr;
+                          Group& group = places[next % most];
+                          group.index = next++;
+                          return &group;
+                        },
+                        .first = [](void*) {},
+                        .work =
+                            [&](void* group) {
+                              workers.lend([&](Worker& worker) {
+                                group_of(group) =
+                                    sum_of_group(group_of(group).index, record, layout, worker);
+                              });
+                            },
+                        .last = [&](void* group) { take(std::move(group_of(group)), average); }});
   });
 }
 
@@ -199,8 +230,8 @@ Spectrum welch_using_up(std::vector<double> record,
   Average average(options, layout);
   average.note_samples(record);
   const int threads = static_cast<int>(threads_of(options));
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
+  parallel::Threads arena(threads);
+  arena.run([&] {
     HalvesInPlace halves(layout.hop, threads);
     for (const char used : halves.add_all(record)) average.note_segment(used != 0);
     record = std::vector<double>();  // `{}` would keep the memory

@@ -5,7 +5,6 @@
 // information] [FOLDER] With a folder: a fleet of that many devices with all of its results is
 // written there, for `sensorchar fleet merge` to be measured.
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
@@ -217,7 +217,7 @@ std::vector<Coefficient> fits_of_lot(Term term, double mean, double spread, std:
   FitOptions options;
   options.second_opinion = options.remedies = false;
   std::vector<Coefficient> out(count);
-  tbb::parallel_for(std::size_t{0}, count / kChunk, [&](std::size_t c) {
+  parallel::for_each(0, count / kChunk, [&](std::size_t c) {
     test::NoiseSource source(kSamples, 1, 4711 + c);
     test::Gaussian gauss(99 + c);
     for (std::size_t i = c * kChunk; i < (c + 1) * kChunk; ++i) {
@@ -335,7 +335,7 @@ std::vector<NoiseFit> neighbour_fits(double walk, std::size_t count) {
   FitOptions options;
   options.second_opinion = options.remedies = false;
   std::vector<NoiseFit> out(count);
-  tbb::parallel_for(std::size_t{0}, count / kChunk, [&](std::size_t c) {
+  parallel::for_each(0, count / kChunk, [&](std::size_t c) {
     test::NoiseSource source(kSamples, 50, 815 + c);
     for (std::size_t i = c * kChunk; i < (c + 1) * kChunk; ++i) {
       const std::vector<double> y = source.record(5e-3, 4e-3, walk);

@@ -3,12 +3,11 @@
 
 #include "libchar/fusion/algorithms/perceptron.hpp"
 
-#include <tbb/global_control.h>
-
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/fusion/detail/network/network_training.hpp"
 #include "tests/fusion/vectors.hpp"
 #include "tests/support/algebra.hpp"
@@ -118,7 +117,7 @@ TEST_CASE("network normals: sums over the rows, the same bits on one core and on
     for (Eigen::Index j = 0; j < square.cols(); ++j)
       CHECK(normals.curvature(i, j) == Approx(square(i, j)).epsilon(1e-12).margin(1e-13 * size));
   }
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const parallel::OneThread one;
   NetworkNormals alone(network);
   REQUIRE(alone.linearise(all, p.data()));
   for (Eigen::Index i = 0; i < square.rows(); ++i)
@@ -170,7 +169,7 @@ TEST_CASE("perceptron: same seed, same bits, another seed, others, blocks do not
   CHECK(test::run(*trained(s), rest).x == x);
   CHECK(test::run(*trained(s, {{"seed", 2}}), rest).x != x);
   {
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const parallel::OneThread one;
     CHECK(test::run(*trained(s), rest).x == x);
   }
   for (const Eigen::Index block : {1, 17}) CHECK(test::run(*trained(s), rest, 1, block).x == x);

@@ -14,6 +14,8 @@ from gates import cpp  # noqa: E402
 from gates.owners import QUESTIONS  # noqa: E402
 
 SPELLINGS = {
+    "threads": "tbb::parallel_for(0, n, work);",
+    "SHA-256": "EVP_DigestFinal_ex(context, digest, &size);",
     "word of a shell": r"""out += "'\\''";""",
     "cell of CSV": r'''out += std::string("\"\"");''',
     "entities of HTML and XML": 'out += "&lt;";',

@@ -42,6 +42,9 @@ QUESTIONS = [
     Question("end of a 95 % interval", "libchar/core/numeric/interval.hpp: kNormal95", r"\b1\.96\b|\b1\.9599"),
     Question("file that is whole or absent", "libchar/core/file/whole_file.cpp: WholeFile",
              r"\bstd::ofstream\b|\bfopen\("),
+    # What differs between platforms (libchar/cmake/libchar_platform.cmake) has one place each.
+    Question("threads", "libchar/core/parallel/threads.cpp: over_ranges", r"\btbb::|<tbb/"),
+    Question("SHA-256", "libchar/core/file/sha256_openssl.cpp: Sha256", r"\bEVP_\w+\(|<openssl/"),
     # No code searches a sentence that the program itself made: what it means is data.
     Question("what a sentence means", "",
              r'\brfind\("[a-z]+ ", 0\)|\bstarts_with\("[A-Z][a-z]+ [^"]*"\)|\.find\("published"\)'

@@ -139,6 +139,13 @@ void set_flags_of_verb(const std::set<std::string>& flags) {
   g_of_verb = &flags;
 }
 
+std::vector<std::pair<std::string, std::string>> flags_of_options() {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const FlagName& name : kFlags)
+    if (name.flag.starts_with("--")) out.emplace_back(name.option, name.flag);
+  return out;
+}
+
 std::string with_flags(const std::string& message) {
   std::vector<std::string_view> used;
   return replaced(message, used);

@@ -4,6 +4,8 @@
 
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "libchar/core/error.hpp"
 
@@ -11,6 +13,9 @@ namespace sensorchar {
 
 /// The flags that the verb has, which must live as long as the program.
 void set_flags_of_verb(const std::set<std::string>& flags);
+
+/// Options of the library with what they are on the command line: a flag, or one with its value ("--bad-rows drop").
+std::vector<std::pair<std::string, std::string>> flags_of_options();
 
 /// The text with every option of the library in backquotes replaced by its flag; what has no flag
 /// stays.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "help/completion.hpp"
+#include "help/flag_names.hpp"
 #include "help/help_page.hpp"
 #include "help/man_page.hpp"
 #include "libchar/core/document/json.hpp"
@@ -75,7 +76,9 @@ std::string usage_json(const ProgramUsage& program) {
                    {"program", program.name},
                    {"program_version", program.version},
                    {"options", list_json(program.options)},
+                   {"settings", Json::object()},
                    {"verbs", Json::array()}};
+  for (const auto& [option, flag] : flags_of_options()) document["settings"][option] = flag;
   for (const VerbUsage& verb : program.verbs) {
     Json examples = Json::array();
     for (const Example& example : verb.examples)

@@ -1,7 +1,6 @@
 // fleet merge DIR… -o REPORT: the results of a fleet, or of several, as one report of the lot.
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/process/free_memory.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/merge.hpp"
@@ -68,8 +68,8 @@ Merged merged(Session& session, const MergeVerb& verb) {
     std::move(records.begin(), records.end(), std::back_inserter(out.records));
     one.plan = {};
   }
-  ::malloc_trim(
-      0);  // what the plans took: the threads that compute the lot have heaps of their own
+  // What the plans took: the threads that compute the lot have heaps of their own.
+  libchar::give_back_free_memory();
   return out;
 }
 

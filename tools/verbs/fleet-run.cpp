@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/fleet/run_unit.hpp"

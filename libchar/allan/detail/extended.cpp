@@ -23,6 +23,7 @@
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/detail/kernels/eight_lanes.hpp"
 #include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar {
 namespace {
@@ -167,7 +168,7 @@ std::vector<AllanPoint> extended_points(const FamilyInput& input,
                                         std::vector<std::string>& notes) {
   std::vector<AllanPoint> points(factors.size());
   std::vector<char> spaced(factors.size());
-  tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
+  parallel::for_each(0, factors.size(), [&](std::size_t k) {
     bool one = false;
     points[k] = extended_point(input, row, factors[k], one);
     spaced[k] = one ? 1 : 0;

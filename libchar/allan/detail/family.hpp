@@ -2,8 +2,6 @@
 // What the families of statistics beside plain differences share: a record without its gaps, pieces
 // of its phase or rate near where they are looked at, and sums of terms in a fixed order.
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -12,6 +10,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/anchored_phase.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar {
 
@@ -91,7 +90,7 @@ FamilySum over_blocks(std::uint64_t begin,
                       const OfBlock& of_block) {
   const std::uint64_t used = (starts + stride - 1) / stride;
   std::vector<double> part((used + block - 1) / block);
-  tbb::parallel_for(std::size_t{0}, part.size(), [&](std::size_t k) {
+  parallel::for_each(0, part.size(), [&](std::size_t k) {
     const std::uint64_t first = k * block;
     part[k] = of_block(begin + first * stride, std::min(block, used - first));
   });

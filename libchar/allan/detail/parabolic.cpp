@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "libchar/allan/detail/family.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar {
 namespace {
@@ -79,7 +80,7 @@ std::vector<AllanPoint> parabolic_points(const FamilyInput& input,
                                          const std::vector<std::uint64_t>& factors,
                                          std::vector<std::string>&) {
   std::vector<AllanPoint> points(factors.size());
-  tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
+  parallel::for_each(0, factors.size(), [&](std::size_t k) {
     const std::uint64_t m = factors[k];
     FamilySum total;
     for (const IndexRange& s : input.stretches) {

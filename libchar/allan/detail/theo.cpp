@@ -21,6 +21,7 @@
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/detail/kernels/eight_lanes.hpp"
 #include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar {
 namespace {
@@ -121,7 +122,7 @@ double bias_removal(FamilyInput input, const IndexRange& stretch, std::vector<st
     notes.push_back("the bias of Theo1 is taken from " + std::to_string(kFewRatios) + " of the " +
                     std::to_string(last + 1) + " ratios, evenly spaced");
   std::vector<double> ratio(used);
-  tbb::parallel_for(std::uint64_t{0}, used, [&](std::uint64_t k) {
+  parallel::for_each(0, used, [&](std::size_t k) {
     const std::uint64_t i = all ? k : k * last / (used - 1);
     bool spaced = false;
     const double theo = theo1_point(input, stretch, 12 + 4 * i, spaced).deviation;
@@ -147,7 +148,7 @@ std::vector<AllanPoint> theo_points(const FamilyInput& input,
       row.type == DeviationType::theo1 || !any_theo ? 1 : bias_removal(input, stretch, notes);
   std::vector<AllanPoint> points(factors.size());
   std::vector<char> spaced(factors.size());
-  tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
+  parallel::for_each(0, factors.size(), [&](std::size_t k) {
     if (factors[k] <= allan_up_to) {
       points[k] = allan_point(input, stretch, factors[k]);
       return;

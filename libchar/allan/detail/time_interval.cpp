@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "libchar/allan/detail/family.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar {
 namespace {
@@ -116,7 +117,7 @@ std::vector<AllanPoint> interval_points(const FamilyInput& input,
   if (row.type == DeviationType::mtie) {
     points = largest_intervals(input, factors);
   } else {
-    tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
+    parallel::for_each(0, factors.size(), [&](std::size_t k) {
       points[k] = mean_square_interval(input, factors[k]);
     });
   }

@@ -4,7 +4,6 @@
 #include "libchar/characterize/compare/verification.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/fit/remedies.hpp"
@@ -273,7 +273,7 @@ bool verify(Characterization& recorded,
     progress.update(static_cast<double>(first) / static_cast<double>(channels.size()),
                     "simulating");
     const std::size_t last = std::min(channels.size(), first + group);
-    tbb::parallel_for(first, last, [&](std::size_t c) {
+    parallel::for_each(first, last, [&](std::size_t c) {
       ChannelResult& channel = channels[c];
       if (!channel.fit) return;
       channel.verification = std::make_shared<ChannelVerification>(

@@ -5,8 +5,6 @@
 #include "libchar/characterize/detail/channel_finish.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_invoke.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 
@@ -15,6 +13,7 @@
 #include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
@@ -322,7 +321,7 @@ void Finish::curve_and_fit(ChannelResult& curve, ChannelResult& result, double r
       octaves = this->octaves(rate_hz);
       there = true;
     });
-  tbb::parallel_invoke(
+  parallel::both(
       [&] {
         if (there) add_curves(octaves, rate_hz, curve);
       },
@@ -341,8 +340,8 @@ void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
   attempt(result, "spectrum", [&] {
     const Spectrum spectrum = make();
     const Quantization grid = quantization();
-    tbb::parallel_invoke([&] { result.lines = find_lines(spectrum, 1e-3, grid); },
-                         [&] { result.spectrum = log_binned(spectrum, kPlottedBins); });
+    parallel::both([&] { result.lines = find_lines(spectrum, 1e-3, grid); },
+                   [&] { result.spectrum = log_binned(spectrum, kPlottedBins); });
     if (options_.spectrum.segment == 0 && !is_whole() && !options_.quarter_segments)
       result.spectrum.notes.push_back(
           fmt::format("segments of {} samples: a quarter of a record of more than {} is taken "
@@ -359,11 +358,11 @@ void Finish::finish(ChannelResult& result, double rate_hz) {
   ChannelResult curve, spectrum;
   const std::size_t before = result.findings.size();
   const bool last = !is_whole() && whole_spectrum(options_);
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_invoke([&] { curve_and_fit(curve, result, rate_hz); },
-                         [&] {
-                           if (options_.wanted.spectrum && !last) add_spectrum(spectrum, rate_hz);
-                         });
+  parallel::isolated([&] {
+    parallel::both([&] { curve_and_fit(curve, result, rate_hz); },
+                   [&] {
+                     if (options_.wanted.spectrum && !last) add_spectrum(spectrum, rate_hz);
+                   });
     if (options_.wanted.spectrum && last) add_spectrum(spectrum, rate_hz);
   });
   result.allan = std::move(curve.allan);

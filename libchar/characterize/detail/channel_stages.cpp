@@ -1,10 +1,10 @@
 #include "libchar/characterize/detail/channel_stages.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
@@ -68,7 +68,7 @@ void ChannelStages::begin(const LogInfo& so_far) {
         temperature ? temperature_options_ : options_, workspace_, !needs_all_samples_.empty());
     stages_.back().reserve(so_far.bytes / std::max<std::size_t>(channels, 1));
   }
-  arena_.initialize(threads_beside_reading(so_far, options_.reading.threads));
+  arena_.limit_to(threads_beside_reading(so_far, options_.reading.threads));
 }
 
 void ChannelStages::block(const SampleBlock& samples) {
@@ -77,8 +77,8 @@ void ChannelStages::block(const SampleBlock& samples) {
     for (ChannelStage& stage : stages_) stage.drop();
     return;
   }
-  arena_.execute([&] {
-    tbb::parallel_for(std::size_t{0}, stages_.size(), [&](std::size_t c) {
+  arena_.run([&] {
+    parallel::for_each(0, stages_.size(), [&](std::size_t c) {
       stages_[c].push({samples.channels[first_ + c], samples.rows});
     });
   });
@@ -182,7 +182,7 @@ std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& p
     progress.update(static_cast<double>(first_ + first) / static_cast<double>(log.channels.size()),
                     "fitting");
     const std::size_t last = std::min(stages_.size(), first + kFittedAtOnce);
-    tbb::parallel_for(first, last, [&](std::size_t c) {
+    parallel::for_each(first, last, [&](std::size_t c) {
       results[c] = stages_[c].finish(log.channels[first_ + c], log.time.rate_hz);
     });
   }

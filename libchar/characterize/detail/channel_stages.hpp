@@ -1,12 +1,11 @@
 #pragma once
 // All channels of a log on their way through, as many at a time as memory allows.
 
-#include <tbb/task_arena.h>
-
 #include <string>
 #include <vector>
 
 #include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/process/progress.hpp"
 #include "libchar/log/read.hpp"
 
@@ -46,7 +45,7 @@ class ChannelStages final : public BlockSink {
   bool all_ = false;
   std::uint64_t rows_ = 0;
   std::string needs_all_samples_;  ///< what does, if anything
-  tbb::task_arena arena_;
+  parallel::Threads arena_;
   std::vector<ChannelStage> stages_;
   CharacterizeOptions temperature_options_;  ///< of the temperature: no phase, no frequency
   std::size_t temperature_index_ = 0;

@@ -164,8 +164,15 @@ struct MemberOf<M T::*> {
   using Type = M;
 };
 
+template <class T, class... Ts>
+constexpr bool is_one_of(const std::variant<Ts...>*) {
+  return (std::is_same_v<T, Ts> || ...);
+}
+
 template <class V>
 Slot slot_of(V& value) {
+  // A pointer to any other number would become one to an object: std::size_t where it has 32 bits.
+  static_assert(!std::is_arithmetic_v<V> || is_one_of<V*>(static_cast<const Slot*>(nullptr)));
   if constexpr (std::is_enum_v<V>) {
     return WordSlot{&value,
                     [](const void* at) { return static_cast<int>(*static_cast<const V*>(at)); },

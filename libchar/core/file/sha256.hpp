@@ -1,13 +1,14 @@
 #pragma once
-#include <memory>
 #include <string>
 #include <string_view>
 
-struct evp_md_ctx_st;
+#include "libchar/core/hidden.hpp"
 
 namespace libchar {
 
-/// SHA-256 of a stream of bytes, by OpenSSL: the same digest as sha256sum prints.
+/// SHA-256 of a stream of bytes: the same digest as sha256sum prints. By OpenSSL
+/// (sha256_openssl.cpp), or where there is none, as in
+/// a web page, in C++ (sha256_portable.cpp).
 class Sha256 {
  public:
   Sha256();
@@ -16,10 +17,8 @@ class Sha256 {
   std::string finish();
 
  private:
-  struct Free {
-    void operator()(evp_md_ctx_st* context) const;
-  };
-  std::unique_ptr<evp_md_ctx_st, Free> context_;
+  struct State;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

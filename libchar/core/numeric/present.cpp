@@ -113,7 +113,7 @@ PresentMean present_mean(std::span<const double> samples) {
       return {samples[0] + sum / static_cast<double>(samples.size()), samples.size()};
   }
   double first = kNone, sum = 0;
-  std::uint64_t present = 0;
+  std::size_t present = 0;
   for (const double x : samples) {
     if (!std::isfinite(x)) continue;
     if (present == 0) first = x;

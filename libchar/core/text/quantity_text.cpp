@@ -9,6 +9,7 @@
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/double_text.hpp"
 
 namespace libchar {
 namespace {
@@ -35,7 +36,8 @@ std::pair<double, std::string_view> leading_number(std::string_view text,
   if (digits.empty() || !may_follow(digits[0]) || octal_looking || text.starts_with("+-"))
     refuse(text, expected);
   double value = 0;
-  const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, status] =
+      detail::read_double(digits.data(), digits.data() + digits.size(), value);
   if (status != std::errc() || magnitude.empty() ||
       !(magnitude[0] == '.' || may_follow(magnitude[0])))
     refuse(text, expected);

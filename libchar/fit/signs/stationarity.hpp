@@ -1,6 +1,7 @@
 #pragma once
 // Is the noise the same throughout a record?
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ struct NoiseFit;
 /// How much the Allan deviation at one averaging time differs between stretches of a record.
 struct StretchSpread {
   double tau_s = 0;
-  std::size_t stretches = 0;
+  std::uint64_t stretches = 0;
   double relative_sd = 0;  ///< of the deviation of a stretch, beyond what chance makes of it
   double p = 1;            ///< of as much scatter in noise that is the same throughout
 };

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <vector>
 
 #include "libchar/core/process/sanitizer.hpp"
 #include "libchar/core/refusal.hpp"
@@ -43,8 +44,6 @@ void confine() {
       "no process can be started to read it in: {}: {}", what, std::strerror(errno));
 }
 
-}  // namespace
-
 bool read_all(int descriptor, std::span<std::byte> to) {
   while (!to.empty()) {
     const ssize_t n = ::read(descriptor, to.data(), to.size());
@@ -65,7 +64,37 @@ bool write_all(int descriptor, std::span<const std::byte> from) {
   return true;
 }
 
-ChildProcess::ChildProcess(void (*serve)(const void*, int, int), const void* context) {
+// Until the other end of `questions` is closed.
+void serve(Answering& parser, int questions, int answers) {
+  std::string next = parser.begin();
+  std::vector<std::byte> question(parser.question_bytes());
+  while (write_all(answers, std::as_bytes(std::span(next))) && read_all(questions, question))
+    next = parser.answer(question);
+}
+
+}  // namespace
+
+struct ChildProcess::State {
+  pid_t child = -1;
+  int questions = -1, answers = -1;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    if (questions >= 0) ::close(questions);
+    if (answers >= 0) ::close(answers);
+    if (child <= 0) return;
+    ::kill(child, SIGKILL);
+    while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+  [[noreturn]] void gone(const char* otherwise);
+};
+
+ChildProcess::ChildProcess(std::unique_ptr<Answering> (*make)(const std::string& path),
+                           const std::string& path)
+    : state_(detail::hidden<State>()) {
   int to_child[2], to_parent[2];
   if (::pipe2(to_child, O_CLOEXEC) != 0) refuse_child("pipe");
   if (::pipe2(to_parent, O_CLOEXEC) != 0) {
@@ -73,40 +102,29 @@ ChildProcess::ChildProcess(void (*serve)(const void*, int, int), const void* con
     ::close(to_child[1]);
     refuse_child("pipe");
   }
-  child_ = ::fork();
-  if (child_ == 0) {
+  State& s = *state_;
+  s.child = ::fork();
+  if (s.child == 0) {
     ::close(to_child[1]);
     ::close(to_parent[0]);
     confine();
-    serve(context, to_child[0], to_parent[1]);
+    serve(*make(path), to_child[0], to_parent[1]);
     ::_exit(0);
   }
   ::close(to_child[0]);
   ::close(to_parent[1]);
-  questions_ = to_child[1];
-  answers_ = to_parent[0];
-  if (child_ > 0) return;
-  ::close(questions_);
-  ::close(answers_);
-  refuse_child("fork");
+  s.questions = to_child[1];
+  s.answers = to_parent[0];
+  if (s.child < 0) refuse_child("fork");
 }
 
-ChildProcess::~ChildProcess() {
-  ::close(questions_);
-  ::close(answers_);
-  if (child_ <= 0) return;
-  ::kill(child_, SIGKILL);
-  while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
-  }
-}
-
-void ChildProcess::gone(const char* otherwise) {
+void ChildProcess::State::gone(const char* otherwise) {
   int status = 0;
-  if (child_ > 0) {
-    ::kill(child_, SIGKILL);  // without effect where it crashed by itself
-    while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+  if (child > 0) {
+    ::kill(child, SIGKILL);  // without effect where it crashed by itself
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    child_ = -1;
+    child = -1;
   }
   if (WIFSIGNALED(status) && WTERMSIG(status) != SIGKILL)
     throw ChildGone{fmt::format("crashed (signal {})", WTERMSIG(status))};
@@ -119,20 +137,20 @@ void ChildProcess::ask(std::span<const std::byte> question) {
   struct sigaction before {};
   ignore.sa_handler = SIG_IGN;
   ::sigaction(SIGPIPE, &ignore, &before);
-  const bool done = write_all(questions_, question);
+  const bool done = write_all(state_->questions, question);
   ::sigaction(SIGPIPE, &before, nullptr);
-  if (!done) gone("gave up");
+  if (!done) state_->gone("gave up");
 }
 
 void ChildProcess::answer(std::span<std::byte> to) {
   while (!to.empty()) {
-    pollfd waiting{answers_, POLLIN, 0};
+    pollfd waiting{state_->answers, POLLIN, 0};
     const int ready = ::poll(&waiting, 1, kPatienceMs);
     if (ready < 0 && errno == EINTR) continue;
-    if (ready == 0) gone("does not come to an end");
-    const ssize_t n = ::read(answers_, to.data(), to.size());
+    if (ready == 0) state_->gone("does not come to an end");
+    const ssize_t n = ::read(state_->answers, to.data(), to.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) gone("gave up");
+    if (n <= 0) state_->gone("gave up");
     to = to.subspan(static_cast<std::size_t>(n));
   }
 }

@@ -1,19 +1,29 @@
 #pragma once
 // A parser that others wrote, in a process of its own: what crashes it or makes it run for ever
 // ends that process and nothing else. No program is started; the process is a copy of this one that
-// answers questions through pipes and may write no file.
-
-#include <sys/types.h>
+// answers questions through pipes and may write no file. Where there are no processes, as in a web
+// page, the parser runs in this
+// one (in_process.cpp): there the page's worker is what it can end.
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 
+#include "libchar/core/hidden.hpp"
+
 namespace libchar {
 
-/// The answers' end, for the code that runs in the child. False when the parent is gone.
-bool read_all(int descriptor, std::span<std::byte> to);
-bool write_all(int descriptor, std::span<const std::byte> from);
+/// What answers. An answer has its length where its reader looks for it.
+class Answering {
+ public:
+  virtual ~Answering() = default;
+  /// Of every question.
+  virtual std::size_t question_bytes() const = 0;
+  /// The first answer, without a question.
+  virtual std::string begin() = 0;
+  virtual std::string answer(std::span<const std::byte> question) = 0;
+};
 
 /// Why a child gave no answer, in words: "it crashed (signal 11)".
 struct ChildGone {
@@ -22,19 +32,16 @@ struct ChildGone {
 
 class ChildProcess {
  public:
-  /// `serve` runs in the child until the other end of `questions` is closed; `context` is its own.
-  ChildProcess(void (*serve)(const void* context, int questions, int answers), const void* context);
-  ~ChildProcess();
-  ChildProcess(const ChildProcess&) = delete;
-  ChildProcess& operator=(const ChildProcess&) = delete;
+  /// `make` runs in the child.
+  ChildProcess(std::unique_ptr<Answering> (*make)(const std::string& path),
+               const std::string& path);
   /// Throw ChildGone.
   void ask(std::span<const std::byte> question);
   void answer(std::span<std::byte> to);
 
  private:
-  [[noreturn]] void gone(const char* otherwise);
-  pid_t child_ = -1;
-  int questions_ = -1, answers_ = -1;
+  struct State;
+  detail::Hidden<State> state_;
 };
 
 }  // namespace libchar

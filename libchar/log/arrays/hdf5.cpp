@@ -23,7 +23,7 @@ constexpr std::string_view kHdf5Magic("\x89HDF\r\n\x1a\n", 8);
 class Hdf5File final : public ArrayContainer {
  public:
   Hdf5File(const std::string& path, std::string kind)
-      : file_(path), kind_(std::move(kind)), child_(serve_hdf5, &path) {
+      : file_(path), kind_(std::move(kind)), child_(answering_hdf5, path) {
     const std::string bytes = next_answer(path, kMostListing);
     if (!decode(bytes, listing_))
       throw input_error("E0465", path).says("its listing makes no sense");

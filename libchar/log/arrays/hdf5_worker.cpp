@@ -16,8 +16,6 @@
 #include <span>
 #include <utility>
 
-#include "libchar/log/arrays/child_process.hpp"
-
 namespace libchar {
 namespace {
 
@@ -501,10 +499,36 @@ class Worker {
   std::size_t objects_ = 0;
 };
 
-bool send(int to, std::span<const std::byte> bytes, bool good) {
-  const std::uint64_t size = good ? bytes.size() : ~std::uint64_t{0};
-  return write_all(to, std::as_bytes(std::span(&size, 1))) && (!good || write_all(to, bytes));
+std::string with_length(std::string_view bytes) {
+  const std::uint64_t size = bytes.size();
+  std::string out(sizeof size, '\0');
+  std::memcpy(out.data(), &size, sizeof size);
+  return out.append(bytes);
 }
+
+class AnsweringHdf5 final : public Answering {
+ public:
+  explicit AnsweringHdf5(std::string path) : path_(std::move(path)) {
+    ::setenv("HDF5_PLUGIN_PATH", "", 1);
+    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
+  }
+  std::size_t question_bytes() const override { return sizeof(Hdf5Question); }
+  std::string begin() override {
+    worker_.list(path_);
+    return with_length(encode(worker_.listing));
+  }
+  std::string answer(std::span<const std::byte> bytes) override {
+    Hdf5Question question;
+    std::memcpy(&question, bytes.data(), sizeof question);
+    const std::vector<std::byte> elements = worker_.read(question);
+    if (elements.empty()) return std::string(sizeof(std::uint64_t), '\xFF');
+    return with_length({reinterpret_cast<const char*>(elements.data()), elements.size()});
+  }
+
+ private:
+  std::string path_;
+  Worker worker_;
+};
 
 }  // namespace
 
@@ -512,18 +536,8 @@ bool hdf5_is_here() {
   return true;
 }
 
-void serve_hdf5(const void* path, int questions, int answers) {
-  ::setenv("HDF5_PLUGIN_PATH", "", 1);
-  ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
-  Worker worker;
-  worker.list(*static_cast<const std::string*>(path));
-  const std::string listing = encode(worker.listing);
-  if (!send(answers, std::as_bytes(std::span(listing)), true)) return;
-  Hdf5Question question;
-  while (read_all(questions, std::as_writable_bytes(std::span(&question, 1)))) {
-    const std::vector<std::byte> elements = worker.read(question);
-    if (!send(answers, elements, !elements.empty())) return;
-  }
+std::unique_ptr<Answering> answering_hdf5(const std::string& path) {
+  return std::make_unique<AnsweringHdf5>(path);
 }
 
 }  // namespace libchar
@@ -536,7 +550,9 @@ bool hdf5_is_here() {
   return false;
 }
 
-void serve_hdf5(const void*, int, int) {}
+std::unique_ptr<Answering> answering_hdf5(const std::string&) {
+  return nullptr;  // who asks has asked hdf5_is_here()
+}
 
 }  // namespace libchar
 

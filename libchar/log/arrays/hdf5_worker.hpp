@@ -4,9 +4,11 @@
 // links, external storage, virtual datasets and plug-ins are never followed.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "libchar/log/arrays/child_process.hpp"
 #include "libchar/log/arrays/log_array.hpp"
 
 namespace libchar {
@@ -32,7 +34,7 @@ struct Hdf5Question {
 };
 
 /// Answers are a u64 of the bytes that follow, or ~0 for what cannot be read; the first one is the
-/// listing, without a question. `path` is a const std::string*.
-void serve_hdf5(const void* path, int questions, int answers);
+/// listing, without a question.
+std::unique_ptr<Answering> answering_hdf5(const std::string& path);
 
 }  // namespace libchar

@@ -11,10 +11,10 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <system_error>
 #include <vector>
 
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/parallel/beside.hpp"
 #include "libchar/core/refusal.hpp"
 
 namespace libchar {
@@ -37,12 +37,7 @@ FileHash::~FileHash() {
 
 void FileHash::start() {
   if (!wanted_ || hashing_.valid() || !digest_.empty()) return;
-  const auto hash = [this] { return digest_of_files(); };
-  try {
-    hashing_ = std::async(std::launch::async, hash);
-  } catch (const std::system_error&) {  // no thread is to be had: afterwards, then
-    hashing_ = std::async(std::launch::deferred, hash);
-  }
+  hashing_ = parallel::beside([this] { return digest_of_files(); });
 }
 
 std::string FileHash::finish() {

@@ -1,11 +1,9 @@
 #include "libchar/log/csv/chunk_pipeline.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <utility>
 
-#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar::csv {
 
@@ -42,8 +40,7 @@ void ChunkPipeline::stop() {
 
 void ChunkPipeline::drive(int threads) {
   try {
-    // TBB warns on stderr of more threads than there are cores.
-    tbb::task_arena(std::min(threads, processors_given())).execute([this] { run(); });
+    parallel::Threads(threads).run([this] { run(); });
   } catch (...) {  // no memory for a task
     failure_ = std::current_exception();
     done_.push(nullptr);
@@ -51,22 +48,12 @@ void ChunkPipeline::drive(int threads) {
 }
 
 void ChunkPipeline::run() {
-  using tbb::filter_mode;
-  tbb::parallel_pipeline(
-      items_.size(),
-      tbb::make_filter<void, Item*>(filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
-        Item* const item = read();
-        if (item == nullptr) flow.stop();
-        return item;
-      }) & tbb::make_filter<Item*, Item*>(filter_mode::serial_in_order, [&](Item* item) {
-        chunks_.hash(item->raw);
-        return item;
-      }) & tbb::make_filter<Item*, Item*>(filter_mode::parallel, [&](Item* item) {
-        parse(*item);
-        return item;
-      }) & tbb::make_filter<Item*, void>(filter_mode::serial_in_order, [&](Item* item) {
-        done_.push(item);
-      }));
+  const auto item_of = [](void* item) { return static_cast<Item*>(item); };
+  parallel::in_order(items_.size(),
+                     {.read = [&]() -> void* { return read(); },
+                      .first = [&](void* item) { chunks_.hash(item_of(item)->raw); },
+                      .work = [&](void* item) { parse(*item_of(item)); },
+                      .last = [&](void* item) { done_.push(item_of(item)); }});
 }
 
 // The next chunk, as soon as an item is free: so chunks that the caller has not taken do not pile up.

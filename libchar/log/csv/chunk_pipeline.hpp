@@ -1,8 +1,6 @@
 #pragma once
 // Chunks of a CSV file parsed in parallel and handed out in file order; a stage of its own hashes
-// them in that order. A thread drives the pipeline of TBB ahead of the caller.
-
-#include <tbb/parallel_pipeline.h>
+// them in that order. A thread drives the pipeline ahead of the caller.
 
 #include <atomic>
 #include <condition_variable>

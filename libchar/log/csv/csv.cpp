@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/core/process/thread_limit.hpp"
+#include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/text.hpp"

@@ -7,6 +7,7 @@
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/csv_cell.hpp"
+#include "libchar/core/text/double_text.hpp"
 #include "libchar/log/write/writers.hpp"
 
 namespace libchar {
@@ -71,11 +72,13 @@ class CsvWriter final : public LogWriter {
   static constexpr double kRelative = 8.64e14;
   static constexpr std::size_t kPiece = std::size_t{1} << 16U;
 
-  template <typename T>
-  void put(T value) {
+  void put(double value) {
     char digits[40];
-    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-    text_.append(digits, end);
+    text_.append(digits, detail::write_double(digits, digits + sizeof digits, value).ptr);
+  }
+  void put(long long value) {
+    char digits[40];
+    text_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
   }
 
   // Row k stands at k / rate: computed, not summed, so that no error grows.

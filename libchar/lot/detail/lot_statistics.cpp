@@ -1,12 +1,11 @@
 #include "libchar/lot/detail/lot_statistics.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <unordered_map>
 
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/lot/detail/statistics/grouped_effects.hpp"
 
@@ -186,7 +185,7 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
 
 std::vector<Statistic> statistics_of(const Fleet& fleet) {
   std::vector<std::optional<Statistic>> all(fleet.groups.size() * kDeviceQuantities);
-  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+  parallel::for_each(0, all.size(), [&](std::size_t i) {
     all[i] = statistic_of(
         fleet, i / kDeviceQuantities, static_cast<DeviceQuantity>(i % kDeviceQuantities));
   });

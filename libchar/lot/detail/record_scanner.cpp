@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "libchar/core/document/document.hpp"
+#include "libchar/core/text/double_text.hpp"
 #include "libchar/core/text/utf8.hpp"
 
 namespace libchar {
@@ -56,7 +57,7 @@ class Scanner {
       if (at_ != end_ && (*at_ == '+' || *at_ == '-')) ++at_;
       if (!digits()) return false;
     }
-    const auto read = std::from_chars(begin, at_, out);
+    const auto read = detail::read_double(begin, at_, out);
     return read.ec == std::errc() && read.ptr == at_;
   }
   bool number_or_null(double& out, double absent) {

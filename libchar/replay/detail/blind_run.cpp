@@ -61,7 +61,8 @@ void BlindRun::find_columns(std::int64_t first, Eigen::Index count) {
   const auto add = [&](std::int64_t from, std::int64_t to, std::vector<Columns>& columns) {
     const std::int64_t begin = std::max(from - first, std::int64_t{0}),
                        end = std::min(to - first, static_cast<std::int64_t>(count));
-    if (begin < end) columns.push_back({begin, end - begin});
+    if (begin < end)
+      columns.push_back({static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)});
   };
   for (const BlindStretch& stretch : planned_->blind.stretches) {
     add(stretch.from, stretch.to, run_);

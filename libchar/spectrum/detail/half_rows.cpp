@@ -1,13 +1,11 @@
 #include "libchar/spectrum/detail/half_rows.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
+
+#include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar::half_segments {
 namespace {
@@ -94,10 +92,7 @@ RowTables::RowTables(std::size_t half)
     }
   };
   // Isolated: who waits here holds the lock of the tables that are shared, and must not begin what needs another.
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, period, kTurnsAtOnce),
-                      [&](const auto& range) { fill(range.begin(), range.end()); });
-  });
+  parallel::isolated([&] { parallel::over_ranges(0, period, kTurnsAtOnce, fill); });
   quarter.resize(n2);
   for (std::size_t m2 = 0; m2 < n2 / 2; ++m2)
     put(quarter.data(), m2, turn(static_cast<double>(m2), static_cast<double>(n2)));

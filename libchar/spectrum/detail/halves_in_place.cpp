@@ -7,11 +7,11 @@
 
 #include "libchar/spectrum/detail/halves_in_place.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+
+#include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar {
 
@@ -56,7 +56,7 @@ void HalvesInPlace::transform_columns(const Pair& pair) {
   const RowTables& t = tables_;
   const RowsBetween even{pair.a, pair.b, t.n2}, odd{odd_.get(), nullptr, t.pitch};
   std::atomic<std::size_t> next{0};  // who does which columns makes no difference
-  tbb::parallel_for(std::size_t{0}, columns_.size(), [&](std::size_t k) {
+  parallel::for_each(0, columns_.size(), [&](std::size_t k) {
     for (std::size_t column; (column = next.fetch_add(t.count)) < t.n2;)
       columns_[k].transform({pair.a, pair.b, pair.mean_a, pair.mean_b}, column, even, odd);
   });
@@ -83,9 +83,8 @@ void HalvesInPlace::add_rows(const Pair& before, Pair& pair, bool first, bool se
   for (RowScratch& rows : rows_) passes.emplace_back(t, rows, work);
   const std::size_t steps = passes[0].steps(), count = passes.size();
   const auto begin_of = [&](std::size_t k) { return steps * k / count; };
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) { passes[k].begin_at(begin_of(k)); });
-  tbb::parallel_for(
-      std::size_t{0}, count, [&](std::size_t k) { passes[k].run(begin_of(k), begin_of(k + 1)); });
+  parallel::for_each(0, count, [&](std::size_t k) { passes[k].begin_at(begin_of(k)); });
+  parallel::for_each(0, count, [&](std::size_t k) { passes[k].run(begin_of(k), begin_of(k + 1)); });
 }
 
 std::vector<char> HalvesInPlace::add_all(std::span<double> record) {
@@ -97,10 +96,10 @@ std::vector<char> HalvesInPlace::add_all(std::span<double> record) {
     Pair pair;
     pair.a = record.data() + i * h;
     if (i + 1 < halves) pair.b = pair.a + h;
-    tbb::parallel_for(0, 2, [&](int which) {
-      if (which == 0) pair.mean_a = mean_about_first(pair.a, h);
-      if (which == 1 && pair.b != nullptr) pair.mean_b = mean_about_first(pair.b, h);
-    });
+    parallel::both([&] { pair.mean_a = mean_about_first(pair.a, h); },
+                   [&] {
+                     if (pair.b != nullptr) pair.mean_b = mean_about_first(pair.b, h);
+                   });
     pair.last_row = last_row_[i / 2 % 2].get();
     const bool whole_a = pair.whole_a(), whole_b = pair.whole_b();
     const bool first = joined && whole_a, second = whole_a && whole_b;

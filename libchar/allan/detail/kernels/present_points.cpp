@@ -1,7 +1,5 @@
 #include "libchar/allan/detail/kernels/present_points.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +9,7 @@
 #include "libchar/allan/detail/anchored_phase.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/kernels/missing_samples.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {
@@ -141,7 +140,7 @@ PresentTerms all_terms(const PresentSums& sums, int order, std::uint64_t m, std:
   if (span > samples) return {};
   const std::uint64_t ends = samples - span + 1, piece = kStarts / stride * stride + stride;
   std::vector<PresentTerms> parts((ends + piece - 1) / piece);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t k) {
+  parallel::for_each(0, parts.size(), [&](std::size_t k) {
     const std::uint64_t first = k * piece;
     parts[k] = present_terms(sums, order, m, first, std::min(first + piece, ends), stride);
   });
@@ -185,7 +184,7 @@ std::vector<AllanPoint> points_of_present(std::span<const double> rate,
   const PresentSums sums = present_sums(rate);
   const MissingSamples missing = octaves_below(sums, factors.empty() ? 0 : factors.back());
   std::vector<AllanPoint> points(factors.size());
-  tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t k) {
+  parallel::for_each(0, factors.size(), [&](std::size_t k) {
     const std::uint64_t m = factors[k];
     const std::uint64_t stride = row.overlapping ? 1 : m;
     const PresentTerms terms =

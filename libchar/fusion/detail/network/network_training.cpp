@@ -1,8 +1,5 @@
 #include "libchar/fusion/detail/network/network_training.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +7,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/fusion/detail/uniform.hpp"
 
@@ -53,8 +51,8 @@ LIBCHAR_WIDE_LANES void add_rows(
 }
 
 void on_all_cores(std::size_t count, std::size_t grain, const auto& work) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
-    for (std::size_t k = range.begin(); k != range.end(); ++k) work(k);
+  parallel::over_ranges(0, count, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k != end; ++k) work(k);
   });
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "libchar/core/text/double_text.hpp"
+
 namespace libchar::csv {
 namespace {
 
@@ -206,7 +208,8 @@ Cell read_cell(std::string_view text, char point) {
   if (digits.size() > 1 && digits[0] == '+' && (is_digit(digits[1]) || digits[1] == '.'))
     digits.remove_prefix(1);
   double value = 0;
-  const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, status] =
+      detail::read_double(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();
   if (whole && status == std::errc::result_out_of_range) {
     if (!below_one(digits)) {

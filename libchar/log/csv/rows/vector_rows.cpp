@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "libchar/core/text/double_text.hpp"
 #include "libchar/log/csv/rows/vector_fours.hpp"
 
 namespace libchar {
@@ -68,7 +69,7 @@ struct Slow {
 __attribute__((noinline)) Slow<double> read_value_slowly(const char* begin, const char* end) {
   Slow<double> out;
   if (begin == end || end - begin > 64) return out;
-  const auto [stop, status] = std::from_chars(begin, end, out.value);
+  const auto [stop, status] = detail::read_double(begin, end, out.value);
   out.good = status == std::errc() && stop == end && std::fabs(out.value) < 0x1p53;
   out.integer =
       std::all_of(begin + (*begin == '-'), end, [](char c) { return c >= '0' && c <= '9'; });

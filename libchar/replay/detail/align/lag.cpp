@@ -63,7 +63,7 @@ struct Pairs {
 };
 
 double coefficient(const Series& sensor, const Series& reference, std::int64_t lag, double fewest) {
-  const auto count = std::ssize(sensor);
+  const auto count = static_cast<std::int64_t>(sensor.size());
   const std::int64_t from = std::max<std::int64_t>(0, -lag), to = std::min(count, count - lag);
   Pairs p;
   for (std::int64_t k = from; k < to; ++k) {

@@ -108,7 +108,9 @@ void RunTracker::push(std::int64_t first,
                        to = std::min<std::int64_t>(first + samples.cols(),
                                                    kept.place.from + kept.place.count);
     if (from >= to) continue;
-    const Part part{from - kept.place.from, from - first, to - from};
+    const Part part{from - kept.place.from,
+                    static_cast<Eigen::Index>(from - first),
+                    static_cast<Eigen::Index>(to - from)};
     for (Eigen::Index j = 0; j < truth.rows(); ++j)
       kept.reference[static_cast<std::size_t>(j)].push(
           part.first, part.count, [&](Eigen::Index k) { return truth(j, part.skip + k) * scale; });

@@ -1,0 +1,153 @@
+// By oneTBB.
+#include <malloc.h>
+#include <sys/resource.h>
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "libchar/core/parallel/parallel.hpp"
+#include "libchar/core/parallel/thread_limit.hpp"
+
+namespace libchar {
+namespace parallel {
+
+bool has_threads() {
+  return true;
+}
+
+void over_ranges(std::size_t first,
+                 std::size_t last,
+                 std::size_t grain,
+                 Call<void(std::size_t, std::size_t)> work) {
+  if (first >= last) return;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, grain),
+                    [&](const auto& range) { work(range.begin(), range.end()); });
+}
+
+void both(Call<void()> one, Call<void()> other) {
+  tbb::parallel_invoke(one, other);
+}
+
+void isolated(Call<void()> work) {
+  tbb::this_task_arena::isolate(work);
+}
+
+void in_order(std::size_t most, const Stages& stages) {
+  using tbb::filter_mode;
+  const auto pass = [](Call<void(void*)> stage) {
+    return [stage](void* item) {
+      stage(item);
+      return item;
+    };
+  };
+  tbb::parallel_pipeline(
+      most,
+      tbb::make_filter<void, void*>(filter_mode::serial_in_order,
+                                    [&](tbb::flow_control& flow) {
+                                      void* const item = stages.read();
+                                      if (item == nullptr) flow.stop();
+                                      return item;
+                                    }) &
+          tbb::make_filter<void*, void*>(filter_mode::serial_in_order, pass(stages.first)) &
+          tbb::make_filter<void*, void*>(filter_mode::parallel, pass(stages.work)) &
+          tbb::make_filter<void*, void>(filter_mode::serial_in_order, stages.last));
+}
+
+struct Threads::State {
+  tbb::task_arena arena;
+};
+
+Threads::Threads(int threads) : state_(detail::hidden<State>()) {
+  if (threads > 0) limit_to(threads);
+}
+
+// TBB warns on stderr of more threads than there are cores.
+void Threads::limit_to(int threads) {
+  state_->arena.initialize(std::min(threads, processors_given()));
+}
+
+void Threads::run(Call<void()> work) {
+  state_->arena.execute(work);
+}
+
+struct OneThread::State {
+  tbb::global_control control{tbb::global_control::max_allowed_parallelism, 1};
+};
+
+OneThread::OneThread() : state_(detail::hidden<State>()) {}
+
+}  // namespace parallel
+
+namespace {
+
+/// Threads that can be there at once beside this one, at most `most`.
+std::size_t threads_given(std::size_t most) {
+  std::mutex lock;
+  std::condition_variable counted;
+  bool done = false;
+  std::vector<std::thread> threads;
+  threads.reserve(most);
+  try {
+    while (threads.size() < most)
+      threads.emplace_back([&] {
+        std::unique_lock hold(lock);
+        counted.wait(hold, [&] { return done; });
+      });
+  } catch (...) {
+    // What there is will do.
+  }
+  {
+    const std::lock_guard hold(lock);
+    done = true;
+  }
+  counted.notify_all();
+  for (std::thread& thread : threads) thread.join();
+  return threads.size();
+}
+
+bool address_space_is_limited() {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+}  // namespace
+
+// The C++ library's own count is that of the machine.
+int processors_given() {
+  return std::max(1, tbb::info::default_concurrency());
+}
+
+void keep_to_threads_given() {
+  const bool limited = address_space_is_limited();
+  // A heap a thread takes 64 MB of addresses each, and where there are none left every allocation tries again.
+  if (limited) ::mallopt(M_ARENA_MAX, 1);
+  const auto wanted = static_cast<std::size_t>(processors_given() - 1);
+  const std::size_t given = threads_given(wanted);
+  if (given == wanted) {
+    // At once, while there is room for their stacks.
+    if (limited) tbb::parallel_for(std::size_t{0}, 4 * wanted, [](std::size_t) {});
+    return;
+  }
+  keep_to_threads(static_cast<int>(given) + 1);
+}
+
+void keep_to_threads(int threads) {
+  // For good: where one ends the pool wants its threads at once, in a destructor.
+  using Controls = std::vector<std::unique_ptr<tbb::global_control>>;
+  static Controls* const controls = new Controls;
+  controls->push_back(
+      std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(std::max(1, threads))));
+}
+
+}  // namespace libchar

@@ -1,0 +1,199 @@
+// The page in a browser: files are dropped on it, every request is recorded, and what comes of it is looked at.
+//
+// usage: node browser.js PAGE [--browser chromium|firefox] [--screens FOLDER] [FILE…]     NODE_PATH has playwright-core and axe-core
+// FILE: logs (default: the fixtures). Prints a row per file: state, seconds, heap is the browser's. Exit code 1 where something is wrong.
+"use strict";
+const fs = require("fs"), os = require("os"), path = require("path");
+const playwright = require("playwright-core");
+
+const ROOT = path.resolve(__dirname, "../..");
+const LIMIT_MS = 120000;
+const BROWSERS = { chromium: "/usr/bin/chromium", firefox: "/usr/bin/firefox-esr" };
+const faults = [];
+
+function check(good, what) {
+  if (!good) faults.push(what);
+  if (!good) console.log(`FAULT: ${what}`);
+}
+
+function fixtures() {
+  const found = [];
+  for (const folder of ["arrays", "flight", "npy", "packed", "ros", "known/badinputs/csv", "known/badinputs/npy"]) {
+    const full = path.join(ROOT, "fixtures", folder);
+    for (const name of fs.readdirSync(full).sort()) if (!/\.(py|mjs|md|tsv)$/.test(name)) found.push(path.join(full, name));
+  }
+  return [path.join(ROOT, "fixtures/imu_at_rest.csv"), ...found];
+}
+
+async function opened(browser, page, options = {}) {
+  const context = await browser.newContext({ acceptDownloads: true, ...options });
+  const requests = [];
+  context.on("request", request => {
+    if (!/^(data|blob):|^about:srcdoc/.test(request.url())) requests.push(request.url());
+  });
+  const tab = await context.newPage();
+  const said = [];
+  tab.on("console", message => {
+    if (message.type() === "error") said.push(message.text());
+  });
+  tab.on("pageerror", error => said.push(String(error)));
+  tab.on("dialog", dialog => {
+    said.push(`dialog ${dialog.message()}`);
+    dialog.dismiss();
+  });
+  const begin = Date.now();
+  await tab.goto(`file://${path.resolve(page)}`);
+  await state(tab, ["ready"]);
+  return { tab, context, requests, said, start: Date.now() - begin };
+}
+
+async function state(tab, wanted, limit = LIMIT_MS) {
+  await tab.waitForFunction(states => states.includes(document.documentElement.dataset.state), wanted, { timeout: limit });
+  return tab.evaluate(() => document.documentElement.dataset.state);
+}
+
+/** Drops files and waits for the end; milliseconds to the first number and to the end. */
+async function dropped(tab, files) {
+  const begin = Date.now();
+  await tab.setInputFiles("#logs", files);
+  await tab.waitForFunction(() => document.documentElement.dataset.state !== "ready", null, { timeout: LIMIT_MS });
+  await tab.waitForFunction(() => document.querySelector("#found table, #found .bad, #found .asked, #found .facts"), null, { timeout: LIMIT_MS });
+  const first = Date.now() - begin;
+  const end = await state(tab, ["done", "error"]);
+  return { end, first, all: Date.now() - begin };
+}
+
+async function everyFile(browser, page, files) {
+  for (const file of files) {
+    const { tab, context, requests, said } = await opened(browser, page);
+    try {
+      const { end, first, all } = await dropped(tab, [file]);
+      const links = await tab.locator("#files a[download]").count(), frame = await tab.locator("#report:not([hidden])").count();
+      const text = end === "error" ? (await tab.locator("#error, #found .bad").allInnerTexts()).join(" ").trim() : "";
+      console.log([path.relative(ROOT, file), end, first / 1e3, all / 1e3, `${links} files`, text.split("\n")[0].slice(0, 110)].join("\t"));
+      check(end === "done" || /E\d{4}/.test(text), `${file}: an error without a code: ${text}`);
+      check(frame === 0 || links >= 3, `${file}: a report without files`);
+    } catch (error) {
+      check(false, `${file}: ${String(error).split("\n")[0]}`);
+    }
+    check(requests.filter(url => !url.startsWith("file:")).length === 0 && requests.length === 1, `${file}: requests ${requests}`);
+    check(said.length === 0, `${file}: the console says ${said.slice(0, 3)}`);
+    await context.close();
+  }
+}
+
+/** Names and cells of a log that would be markup, if anybody took them for it. */
+async function injections(browser, page, folder) {
+  const payload = "<img src=x onerror=\"window.pwned=1\"><script>window.pwned=1</script>\"'>{{7*7}}`${1}`";
+  const csv = path.join(folder, "<b>bold<img src=x onerror=window.pwned=1>.csv".replaceAll("/", ""));
+  const rows = Array.from({ length: 2000 }, (_, i) => `${i / 100},${Math.sin(i * i) + (i % 131 === 0 ? -999 : 0)}`);
+  fs.writeFileSync(csv, `t,"${payload.replaceAll('"', '""')} [<i>U</i>]"\n${rows.join("\n")}\n`);
+  const broken = path.join(folder, "broken<script>.json");
+  fs.writeFileSync(broken, `{"format": "characterization", "verdict": "${"<img src=x onerror=window.pwned=1>".replaceAll('"', "")}"}`);
+  const { tab, context, requests, said } = await opened(browser, page);
+  await dropped(tab, [csv]);
+  check((await tab.locator("#found b, #found img, #found i, #command img, #status b").count()) === 0, "markup of a log became elements");
+  check((await tab.evaluate(() => window.pwned)) === undefined, "a script of a log ran");
+  for (const frame of tab.frames().slice(1)) check((await frame.evaluate(() => window.pwned)) === undefined, "a script of a log ran in the report");
+  await dropped(tab, [broken]);
+  check((await tab.evaluate(() => window.pwned)) === undefined, "a script of a document ran");
+  check(requests.length === 1, `requests of hostile files: ${requests}`);
+  check(!said.some(text => text.startsWith("dialog")), `dialogs: ${said}`);
+  await context.close();
+}
+
+/** The uses, one after the other, from a log at rest. */
+async function uses(browser, page, folder) {
+  const { tab, context, requests, said, start } = await opened(browser, page);
+  const log = path.join(ROOT, "fixtures/imu_at_rest.csv");
+  const { end, first, all } = await dropped(tab, [log]);
+  console.log(`start ${start / 1e3} s, first number ${first / 1e3} s, report ${all / 1e3} s (${path.basename(log)})`);
+  check(end === "done", "the log at rest is characterized");
+  check((await tab.locator("#command").innerText()).startsWith("sensorchar characterize imu_at_rest.csv"), "the command is shown");
+  const run = async (use, fill = async () => {}) => {
+    await tab.getByRole("button", { name: use, exact: true }).first().click();
+    await fill();
+    await tab.locator("#run").click();
+    await tab.waitForFunction(() => document.documentElement.dataset.state !== "working", null, { timeout: LIMIT_MS });
+    const state = await tab.evaluate(() => document.documentElement.dataset.state);
+    check(state === "done", `${use}: ${state}: ${await tab.locator("#error").innerText()}`);
+    console.log(`${use}: ${state}; ${await tab.locator("#command").innerText()}`);
+  };
+  await run("Export for a consumer", () => tab.getByLabel("Axes", { exact: true }).selectOption("z"));
+  await run("Figure");
+  check((await tab.locator("#figures img").count()) === 1, "a figure is shown");
+  await run("Simulate");
+  const [download] = await Promise.all([tab.waitForEvent("download"), tab.locator("#zip").click()]);
+  const zip = path.join(folder, "all.zip");
+  await download.saveAs(zip);
+  check(fs.statSync(zip).size > 1000, "an archive of all files");
+  check(requests.length === 1 && said.length === 0, `the uses: requests ${requests}, console ${said}`);
+  await context.close();
+}
+
+async function accessible(browser, page) {
+  let axe;
+  try {
+    axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+  } catch {
+    console.log("axe-core is not there: its rules were not asked");
+    return;
+  }
+  for (const colorScheme of ["light", "dark"]) {
+    const { tab, context } = await opened(browser, page, { colorScheme });
+    await dropped(tab, [path.join(ROOT, "fixtures/imu_at_rest.csv")]);
+    await tab.evaluate(axe);
+    const found = await tab.evaluate(() => window.axe.run(document, { iframes: false }));
+    for (const one of found.violations) check(false, `axe, ${colorScheme}: ${one.id}: ${one.nodes.slice(0, 3).map(node => node.html.slice(0, 120)).join(" | ")}`);
+    console.log(`axe, ${colorScheme}: ${found.passes.length} rules passed, ${found.violations.length} not`);
+    await context.close();
+  }
+}
+
+async function screens(browser, page, folder) {
+  fs.mkdirSync(folder, { recursive: true });
+  for (const [width, colorScheme] of [[1400, "light"], [800, "light"], [390, "light"], [1400, "dark"]]) {
+    const { tab, context } = await opened(browser, page, { viewport: { width, height: 1000 }, colorScheme });
+    await tab.screenshot({ path: path.join(folder, `empty-${width}-${colorScheme}.png`) });
+    await dropped(tab, [path.join(ROOT, "fixtures/imu_at_rest.csv")]);
+    await tab.waitForTimeout(1500);
+    await tab.screenshot({ path: path.join(folder, `one-${width}-${colorScheme}.png`), fullPage: true });
+    await tab.locator("#report").scrollIntoViewIfNeeded();
+    await tab.waitForTimeout(800);
+    await tab.screenshot({ path: path.join(folder, `report-${width}-${colorScheme}.png`) });
+    const wide = await tab.evaluate(() => document.documentElement.scrollWidth > document.documentElement.clientWidth);
+    check(!wide, `the page is wider than ${width} px`);
+    await context.close();
+  }
+}
+
+async function main() {
+  const words = process.argv.slice(2), named = name => {
+    const at = words.indexOf(name);
+    return at < 0 ? undefined : words.splice(at, 2)[1];
+  };
+  const kind = named("--browser") || "chromium", folder = named("--screens"), only = named("--only");
+  const [page, ...files] = words;
+  const scratch = fs.mkdtempSync(path.join(os.tmpdir(), "page-"));
+  const browser = await playwright[kind].launch({ executablePath: BROWSERS[kind], args: kind === "chromium" ? ["--no-sandbox", "--disable-gpu"] : [] });
+  const steps = {
+    uses: () => uses(browser, page, scratch),
+    injections: () => injections(browser, page, scratch),
+    accessible: () => accessible(browser, page),
+    screens: () => folder && screens(browser, page, folder),
+    files: () => everyFile(browser, page, files.length > 0 ? files : fixtures()),
+  };
+  for (const [name, step] of Object.entries(steps)) if (!only || only === name) {
+    try {
+      await step();
+    } catch (error) {
+      check(false, `${name}: ${String(error).split("\n").slice(0, 3).join(" ")}`);
+    }
+  }
+  await browser.close();
+  fs.rmSync(scratch, { recursive: true });
+  console.log(faults.length === 0 ? "page: no fault" : `page: ${faults.length} faults`);
+  process.exit(faults.length > 0 ? 1 : 0);
+}
+
+main();

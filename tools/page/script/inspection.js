@@ -1,0 +1,114 @@
+// What `inspect` says of a recording, with what is missing asked for in place.
+"use strict";
+
+function facts(recording) {
+  const words = [recording.format, bytesText(recording.bytes)];
+  if (recording.rate_hz) {
+    words.push(`${numberText(recording.rate_hz)} Hz`, `${numberText(recording.samples / recording.rate_hz)} s`);
+    words.push(recording.gaps === 1 ? "1 gap" : `${recording.gaps} gaps`);
+  } else if (recording.channels.length > 0) {
+    words.push(`${recording.samples} samples`);
+  }
+  if (recording.topic) words.push(`stream ${recording.topic}`);
+  return words.join(", ");
+}
+
+/** Cell for the unit: what the log says, or a question. */
+function unitCell(item, channel, changed) {
+  if (channel.unit) return element("td", {}, channel.unit);
+  const input = element("input", { type: "text", "aria-label": `Unit of ${channel.name}`, placeholder: "unit, such as deg/s", size: 12, value: item.units.get(channel.name) });
+  input.addEventListener("change", () => {
+    if (input.value) item.units.set(channel.name, input.value);
+    else item.units.delete(channel.name);
+    changed();
+  });
+  return element("td", {}, input);
+}
+
+function channelTable(item, recording, changed) {
+  const heads = ["channel", "unit", "mean", "standard deviation", "smallest", "largest", "missing"];
+  const rows = recording.channels.map(channel => element("tr", {},
+    element("th", { scope: "row" }, channel.name), unitCell(item, channel, changed),
+    ...[channel.mean, channel.standard_deviation, channel.minimum, channel.maximum, channel.missing].map((value, i) =>
+      element("td", { class: "n", "data-label": heads[i + 2] }, numberText(value)))));
+  return element("div", { class: "wide" }, element("table", { class: "cards" },
+    element("thead", {}, element("tr", {}, ...heads.map(head => element("th", { scope: "col" }, head)))),
+    element("tbody", {}, ...rows)));
+}
+
+/** A finding with its remedies: those that are options of the same command are buttons. */
+function seen(finding, subject, item, changed) {
+  const parts = [subject ? element("strong", {}, `${subject}: `) : null, withFlags(finding.sentence, USAGE.settings)];
+  for (const remedy of finding.remedies || []) {
+    const options = (remedy.options || []).filter(({ option }) => USAGE.settings[option]);
+    const sentence = withFlags(remedy.sentence, USAGE.settings);
+    if (options.length === 0) {
+      parts.push(" ", element("span", { class: "dim" }, sentence));
+      continue;
+    }
+    parts.push(button(sentence, () => {
+      for (const { option, value } of options) {
+        const [flag, fixed] = USAGE.settings[option].split(" ");
+        item.reading.set(flag, fixed || value || true);
+      }
+      changed();
+    }));
+  }
+  return element("li", { class: finding.severity }, ...parts);
+}
+
+/** A question for one option of reading, answered by Enter or the button. */
+function question(sentence, label, flag, placeholder, item, changed) {
+  const input = element("input", { type: "text", placeholder, value: item.reading.get(flag), size: 14 });
+  const answer = () => {
+    if (!input.value.trim()) return;
+    item.reading.set(flag, input.value.trim());
+    changed();
+  };
+  input.addEventListener("keydown", event => {
+    if (event.key === "Enter") answer();
+  });
+  return element("div", { class: "asked" }, element("p", {}, sentence), field(label, input), button("Go on", answer, { class: "run" }));
+}
+
+function topicChoice(item, recording, changed) {
+  const sound = recording.topics.filter(topic => !topic.why_not && topic.fields.length > 0).sort((a, b) => b.rows - a.rows);
+  const named = topic => `${topic.name} (${topic.fields.length} fields, ${topic.rows} rows${topic.rate_hz ? `, ${numberText(topic.rate_hz)} Hz` : ""})`;
+  const select = element("select", {}, ...sound.map(topic => element("option", { value: topic.name }, named(topic))));
+  return element("div", { class: "asked" }, element("p", {}, "This log holds several streams. Choose the one to look at."),
+    field("Stream", select), button("Go on", () => {
+      item.reading.set("--topic", select.value);
+      changed();
+    }, { class: "run" }));
+}
+
+/** What was chosen for reading, each with a way back. */
+function chosen(item, changed) {
+  const rows = [...item.reading].map(([flag, value]) => element("li", {}, element("code", {}, value === true ? flag : `${flag} ${value}`),
+    button("Take back", () => {
+      item.reading.delete(flag);
+      changed();
+    })));
+  return rows.length > 0 ? element("ul", { class: "seen" }, ...rows) : null;
+}
+
+/** The inside of an item's card. */
+function inspectionView(item, changed) {
+  const { recording } = item;
+  const parts = [element("p", { class: "facts" }, facts(recording))];
+  if (recording.channels.length === 0 && (recording.topics || []).length > 0) return [...parts, topicChoice(item, recording, changed), chosen(item, changed)];
+  const noRate = !recording.rate_hz && recording.rows > 1;
+  if (noRate) parts.push(question("The log does not say how fast it was sampled.", "Sampling rate", "--rate", "200 Hz", item, changed));
+  parts.push(channelTable(item, recording, changed));
+  const found = [...(item.warnings || []).map(one => [one, ""]), ...recording.channels.flatMap(channel => channel.findings.map(one => [one, channel.name]))];
+  if (found.length > 0) parts.push(element("ul", { class: "seen" }, ...found.map(([one, subject]) => seen(one, subject, item, changed))));
+  parts.push(chosen(item, changed));
+  return parts;
+}
+
+/** Words that read an item as it was described. */
+function readingWords(item) {
+  const words = optionWords(item.reading);
+  if (item.units.size > 0) words.push("--unit", [...item.units].map(([name, unit]) => `${name}=${unit}`).join(","));
+  return words;
+}

@@ -1,0 +1,345 @@
+// The page: takes what is dropped, asks the program what it is, offers uses, runs their commands, shows what came of it.
+"use strict";
+
+let USAGE = null; // what the program can be told (--generate json)
+let TARGETS = []; // of model --to
+const CODE = /\berror (E\d{4})\b/;
+
+const bench = {
+  items: [], // what was dropped: {name, kind, parts, reading, units, recording, warnings, error}
+  made: [], // what the program wrote: {name, blob}
+  get logs() { return this.items.filter(isLog); },
+  get scenes() { return this.items.filter(({ kind }) => kind === "scene"); },
+  get tables() { return this.items.filter(({ kind, name }) => kind === "log" && /\.(csv|tsv|txt)$/i.test(name)); },
+  get models() {
+    const dropped = this.items.filter(({ kind }) => kind === "model"), written = this.made.filter(({ name }) => name.endsWith(".sensor.yaml"));
+    return [...dropped, ...written];
+  },
+  /** What figures, exports and comparisons are made of. */
+  get subjects() {
+    const dropped = this.items.filter(({ kind }) => kind === "report" || kind === "model").map(({ name, kind }) => ({ name, kind, channels: [] }));
+    const folders = this.made.filter(({ report }) => report).map(({ name, report }) => ({ name: folderOf(name), ...report }));
+    return [...folders, ...dropped];
+  },
+  /** A name that no output has yet. */
+  free(name) {
+    const taken = new Set(this.made.flatMap(one => [one.name, one.name.split("/")[0]]));
+    return freeName(name, taken);
+  },
+};
+let pool = null, use = null, running = 0;
+
+function setState(state, text) {
+  document.documentElement.dataset.state = state;
+  byId("cancel").hidden = state !== "working";
+  if (text !== undefined) byId("status").textContent = text;
+}
+
+function showError(text, code) {
+  const box = byId("error");
+  box.hidden = !text;
+  box.replaceChildren();
+  if (!text) return;
+  box.append(element("p", {}, text));
+  if (code) box.append(button(`What ${code} means`, () => command(["explain", code], { keep: true })));
+}
+
+const lastLine = text => text.trim().split("\n").filter(Boolean).pop() || "";
+
+/** What a run that failed says, as one who has only this page can use it. */
+function failure(answer) {
+  if (answer.failed === undefined) {
+    const line = answer.err.split("\n").find(one => CODE.test(one) || one.includes("internal error")) || lastLine(answer.err);
+    return line.replace(/^sensorchar: /, "") || `the program ended with exit code ${answer.code}`;
+  }
+  const memory = /memory|allocation|out of bounds|OOM/i.test(answer.failed);
+  return memory
+    ? "The browser gives the program no more memory for this. On a command line, the same command takes as much as the machine has."
+    : `The program ended in this browser: ${answer.failed}. On a command line, the same command may say more.`;
+}
+
+const parts = items => items.flatMap(item => item.parts);
+
+/** Runs words over everything that is here. */
+function start(words, what, made = []) {
+  ++running;
+  setState("working", `${what} …`);
+  const logs = [...parts(bench.items), ...made.map(({ name, blob }) => ({ name, file: blob }))];
+  return pool.run({ words, logs, progress: text => setState("working", text || `${what} …`) }).finally(() => --running);
+}
+
+/** One item, looked at by the program. */
+async function inspect(item) {
+  const answer = await start(["inspect", item.name, ...readingWords(item), "--json"], `Reading ${item.name}`);
+  item.error = "";
+  item.recording = null;
+  if (answer.failed !== undefined || answer.code !== 0) {
+    item.error = failure(answer);
+    return;
+  }
+  const document = JSON.parse(answer.out);
+  item.recording = document.recordings[0];
+  item.warnings = document.findings;
+}
+
+function card(item) {
+  const changed = () => look([item]);
+  const remove = button("Remove", () => {
+    bench.items = bench.items.filter(one => one !== item);
+    draw();
+  }, { "aria-label": `Remove ${item.name}` });
+  const head = element("h3", {}, item.name, remove);
+  if (item.error) {
+    const code = CODE.exec(item.error);
+    const box = element("ul", { class: "seen" }, element("li", { class: "bad" }, item.error,
+      code ? button(`What ${code[1]} means`, () => command(["explain", code[1]], { keep: true })) : null));
+    return element("article", {}, head, box, chosen(item, changed));
+  }
+  if (item.recording) return element("article", {}, head, ...inspectionView(item, changed).filter(Boolean));
+  const about = { model: "sensor model", report: "report", scene: "scene", beside: "read with what stands beside it", log: "" }[item.kind];
+  return element("article", {}, head, element("p", { class: "facts" }, about));
+}
+
+function drawUses() {
+  const there = USES.filter(one => one.fits(bench));
+  byId("use").hidden = there.length === 0;
+  if (there.length === 0) return;
+  if (!there.includes(use)) use = there[0];
+  byId("uses").replaceChildren(...there.map(one => button(one.label, () => {
+    use = one;
+    drawUses();
+  }, { "aria-pressed": String(one === use) })));
+  drawOptions();
+}
+
+function drawOptions() {
+  const changed = whole => whole === true ? drawOptions() : showCommand();
+  const own = use.choices ? element("div", { class: "fields" }, ...use.choices(bench, use, changed)) : null;
+  byId("options").replaceChildren(...[own, ...optionFields(use.verb, use, changed), element("p", {}, element("button", { class: "run", id: "run" }, use.label))].filter(Boolean));
+  showCommand();
+}
+
+function showCommand() {
+  byId("command").textContent = shellCommand(use.words(bench, use));
+}
+
+function draw() {
+  byId("found").replaceChildren(...bench.items.map(card));
+  drawUses();
+}
+
+/** Looks at items again, each beside the others, and draws; a single recording of which all is known is characterized at once. */
+async function look(items) {
+  showError("");
+  try {
+    await Promise.all(items.filter(({ kind }) => kind === "log").map(async item => {
+      await inspect(item);
+      draw();
+    }));
+  } catch (error) {
+    return stopped(error);
+  }
+  draw();
+  const [only] = bench.items.filter(({ kind }) => kind === "log");
+  if (bench.logs.length === 1 && bench.items.filter(({ kind }) => kind === "log").length === 1 && only.recording.rate_hz) {
+    use = USES[0];
+    drawUses();
+    return run();
+  }
+  const failed = items.filter(item => item.error);
+  if (failed.length > 0 && failed.length === items.length) setState("error", failed.length === 1 ? failed[0].error : "None of these files could be read.");
+  else setState("done", bench.logs.length > 0 || bench.items.some(({ recording }) => recording) ? "Read." : "Ready.");
+}
+
+function stopped(error) {
+  if (error instanceof Cancelled) setState("done", "Cancelled.");
+  else setState("error", String(error && error.message || error));
+}
+
+async function take(files) {
+  const taken = new Set(bench.items.map(({ name }) => name)), fresh = [];
+  for (const { name, parts: found } of asLogs(files)) {
+    const free = freeName(name, taken);
+    taken.add(free);
+    const kind = found.length > 1 ? "log" : await kindOf(free, found[0].file);
+    const renamed = found.map(part => ({ name: free + part.name.slice(name.length), file: part.file }));
+    fresh.push({ name: free, kind, parts: renamed, reading: new Map(), units: new Map(), recording: null, error: "" });
+  }
+  bench.items.push(...fresh);
+  draw();
+  await look(fresh);
+}
+
+const run = () => command(use.words(bench, use), { made: use.made ? bench.made : [] });
+
+/** Runs a command and shows all of it. `keep`: what is shown of the last one stays. */
+async function command(words, { made = [], keep = false } = {}) {
+  if (!keep) showError("");
+  byId("command").textContent = shellCommand(words);
+  let answer;
+  try {
+    answer = await start(words, "Working", made);
+  } catch (error) {
+    return stopped(error);
+  }
+  const failed = answer.failed !== undefined || ![0, 4, 6].includes(answer.code) || (answer.code === 4 && answer.files.length === 0);
+  if (failed) {
+    const text = failure(answer), code = CODE.exec(text);
+    showError(text, code && code[1]);
+    setState("error", "That did not work.");
+    return;
+  }
+  keepFiles(answer.files);
+  show(answer);
+  if (!keep) drawUses();
+  byId("command").textContent = shellCommand(words);
+  setState("done", answer.code === 0 ? "Done." : answer.code === 6 ? "Done: a check failed." : "Done, with a warning.");
+}
+
+function keepFiles(files) {
+  const fresh = files.map(({ name, bytes }) => ({ name, bytes, blob: new File([bytes], name.split("/").pop()), report: reportOf(name, bytes) }));
+  bench.made = [...bench.made.filter(({ name }) => !fresh.some(one => one.name === name)), ...fresh];
+  drawFiles();
+}
+
+/** Of a report.json: a characterization and its channels, or a replay. */
+function reportOf(name, bytes) {
+  if (!name.endsWith("/report.json")) return null;
+  const { format, recording } = JSON.parse(new TextDecoder().decode(bytes));
+  return { kind: format === "replay" ? "replay" : "report", channels: format === "replay" ? [] : recording.channels };
+}
+
+const TYPES = { html: "text/html", json: "application/json", svg: "image/svg+xml", csv: "text/csv", yaml: "text/yaml", md: "text/markdown" };
+
+function drawFiles() {
+  byId("saving").hidden = bench.made.length === 0;
+  for (const link of byId("files").querySelectorAll("a")) URL.revokeObjectURL(link.href);
+  byId("files").replaceChildren(...bench.made.map(({ name, bytes }) => {
+    const type = TYPES[name.split(".").pop()] || "application/octet-stream";
+    const link = element("a", { href: URL.createObjectURL(new Blob([bytes], { type })), download: name.split("/").pop() }, name);
+    return element("li", {}, link, element("span", { class: "dim" }, ` ${bytesText(bytes.length)}`));
+  }));
+}
+
+function show(answer) {
+  byId("result").hidden = false;
+  const page = answer.files.find(({ name }) => /(^|\/)(report|index|runs)\.html$/.test(name) && name.split("/").length <= 2);
+  const frame = byId("report");
+  frame.hidden = !page;
+  byId("print").hidden = !page;
+  if (page) frame.srcdoc = new TextDecoder().decode(page.bytes);
+  const warnings = answer.err.split("\n").filter(line => line.trim());
+  byId("said").replaceChildren(...warnings.map(line => element("li", {}, line.replace(/^sensorchar: /, ""))));
+  byId("text").hidden = page !== undefined || !answer.out.trim();
+  byId("text").textContent = answer.out;
+  byId("figures").replaceChildren(...answer.files.filter(({ name }) => name.endsWith(".svg")).map(figure));
+  const small = answer.files.length === 1 && !page && answer.files[0].bytes.length < 2e5 && !/\.(svg|npy)$/.test(answer.files[0].name);
+  if (small) {
+    byId("text").hidden = false;
+    byId("text").textContent = `${answer.out}\n${new TextDecoder().decode(answer.files[0].bytes)}`.trim();
+  }
+}
+
+/** A figure as it is saved, with a way to have it as PNG. */
+function figure({ name, bytes }) {
+  const picture = element("img", { src: URL.createObjectURL(new Blob([bytes], { type: "image/svg+xml" })), alt: `Figure ${name}` });
+  const png = button("Add it as PNG", () => {
+    const scale = 3, canvas = element("canvas", { width: picture.naturalWidth * scale, height: picture.naturalHeight * scale });
+    const context = canvas.getContext("2d");
+    context.fillStyle = "#fff";
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(picture, 0, 0, canvas.width, canvas.height);
+    canvas.toBlob(async blob => keepFiles([{ name: name.replace(/svg$/, "png"), bytes: new Uint8Array(await blob.arrayBuffer()) }]), "image/png");
+  });
+  return element("figure", { class: "plot" }, picture, element("figcaption", {}, name, " ", png));
+}
+
+function save(blob, name) {
+  const link = element("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+}
+
+function listen() {
+  byId("logs").addEventListener("change", event => {
+    const files = [...event.target.files].map(file => ({ name: file.webkitRelativePath || file.name, file }));
+    event.target.value = "";
+    if (files.length > 0) take(files);
+  });
+  for (const kind of ["dragenter", "dragover"]) addEventListener(kind, event => {
+    event.preventDefault();
+    document.documentElement.classList.add("dragging");
+  });
+  addEventListener("dragleave", event => {
+    if (event.relatedTarget === null) document.documentElement.classList.remove("dragging");
+  });
+  addEventListener("drop", async event => {
+    event.preventDefault();
+    document.documentElement.classList.remove("dragging");
+    const files = await droppedFiles(event.dataTransfer);
+    if (files.length > 0) await take(files);
+  });
+  byId("options").addEventListener("submit", event => {
+    event.preventDefault();
+    if (running === 0) run();
+  });
+  byId("cancel").addEventListener("click", () => pool.cancel());
+  byId("copy").addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText(byId("command").textContent);
+      byId("status").textContent = "Copied.";
+    } catch {
+      getSelection().selectAllChildren(byId("command")); // a page from disk may not: selected, for Ctrl-C
+    }
+  });
+  byId("zip").addEventListener("click", () => save(zipped(bench.made), "sensorchar.zip"));
+  byId("print").addEventListener("click", () => {
+    const page = bench.made.filter(({ name }) => name.endsWith(".html")).pop();
+    open(URL.createObjectURL(new Blob([page.bytes], { type: "text/html" })));
+  });
+}
+
+/** The bytes of a text of 7 bits a character (tools/page/build/pack.py: seven_bits). */
+function fromSevenBits(text) {
+  const replaced = [0x00, 0x0d, 0x3c], bytes = new Uint8Array(Math.floor(text.length * 7 / 8));
+  let value = 0, held = 0, at = 0;
+  for (let i = 0; i < text.length; ++i) {
+    const code = text.charCodeAt(i);
+    value = value << 7 | (code < 0x80 ? code : replaced[code - 0x80]);
+    held += 7;
+    if (held < 8) continue;
+    held -= 8;
+    bytes[at++] = value >> held;
+    value &= (1 << held) - 1;
+  }
+  return bytes;
+}
+
+/** What an element of the page has packed inside. */
+function unpacked(id, type) {
+  const bytes = fromSevenBits(byId(id).textContent);
+  byId(id).remove();
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")), { headers: { "Content-Type": type } });
+}
+
+/** The program, compiled while it is unpacked. */
+async function makePool() {
+  const [texts, module] = await Promise.all([unpacked("texts", "application/json").json(), WebAssembly.compileStreaming(unpacked("module", "application/wasm"))]);
+  USAGE = texts.usage;
+  TARGETS = texts.targets.targets;
+  return new Pool(texts.worker, module);
+}
+
+async function begin() {
+  listen();
+  try {
+    pool = await makePool();
+  } catch (error) {
+    showError(`This browser cannot run the program: ${error.message}. It needs Chromium or Edge 95, Firefox 113, Safari 16.4 or a newer one.`);
+    return setState("error", "");
+  }
+  byId("version").textContent = USAGE.program_version.replace(/^sensorchar /, "");
+  setState("ready", "Ready.");
+}
+
+begin();
