@@ -159,6 +159,8 @@ void read_slow_channels_alone(const std::string& path,
   if (slow.empty() || result.channels.size() != result.log.channels.size()) return;
   if (read_once(path) || !options.temperature.empty() || result.channels.size() == 1) {
     const bool alone = options.temperature.empty() && result.channels.size() > 1;
+    if (!alone && result.log.warnings.find("slow_channel") != nullptr)
+      result.log.warnings.add("slow_channel", "", {}, 0).help.clear();
     for (const std::size_t c : slow) doubt(result.log.channels[c], alone, result.channels[c]);
     return;
   }

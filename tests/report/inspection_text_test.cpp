@@ -35,8 +35,7 @@ TEST_CASE("an inspection in text: how it was read, guesses, repairs, a line a ch
   const std::string text = inspection_text(inspection);
   CHECK_THAT(text, Contains("  read as csv: delimiter ;; decimal comma\n"));
   CHECK_THAT(text, Contains("  guessed: time unit: us\n"));
-  CHECK_THAT(text,
-             Contains("  warning: ") && Contains("gaps in the stamps") && Contains("line 12"));
+  CHECK_THAT(text, Contains("  note: ") && Contains("gaps in the stamps") && Contains("line 12"));
   CHECK_THAT(squeezed(text), Contains("gyro deg/s 3 "));
   CHECK_THAT(squeezed(text), Contains("still - 0 0 constant "));
   CHECK_THAT(text, Contains("  still: is it connected?\n"));

@@ -1,7 +1,6 @@
 #include "libchar/core/file/folder_lock.hpp"
 
 #include <fcntl.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,7 +10,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <ctime>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -57,10 +55,18 @@ void sign(int file) {
   struct stat status {};
   if (::fstat(file, &status) != 0 || status.st_nlink != 1 || status.st_size > 1024) return;
   Json text = {{"process", ::getpid()}, {"host", this_host()}};
-  std::tm now{};
-  const std::time_t seconds = std::time(nullptr);
-  ::gmtime_r(&seconds, &now);
-  text["since"] = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", now);
+  // By the calendar of the library: that of C opens the file of the time zone.
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const auto day = std::chrono::floor<std::chrono::days>(now);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss time(now - day);
+  text["since"] = fmt::format("{}-{:02}-{:02} {:02}:{:02}:{:02} UTC",
+                              static_cast<int>(date.year()),
+                              static_cast<unsigned>(date.month()),
+                              static_cast<unsigned>(date.day()),
+                              time.hours().count(),
+                              time.minutes().count(),
+                              time.seconds().count());
   const std::string line = text.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n";
   if (::ftruncate(file, 0) != 0) return;
   [[maybe_unused]] const ssize_t said = ::pwrite(file, line.data(), line.size(), 0);
