@@ -89,9 +89,14 @@ std::string why_not_in_leaves(const CharacterizeOptions& options) {
 
 LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace)
     : options_(&options),
-      spectrum_(spectrum_in_leaves(options), &workspace),
+      workspace_(&workspace),
       wants_spectrum_(options.wanted.spectrum && why_not_in_leaves(options).empty()),
       blocks_(PowerPart::kBlock, &workspace) {}
+
+WelchParts& LeafStage::spectrum() const {
+  if (!spectrum_) spectrum_.emplace(spectrum_in_leaves(*options_), workspace_);
+  return *spectrum_;
+}
 
 void LeafStage::make_rate(std::vector<double>& samples) const {
   forget_wild(samples);
@@ -137,8 +142,8 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
   LeafKind kind{last, options_->fit.remedies, found.missing == 0 && !is_phase()};
   // Blocks of another length are of no use.
   const bool shares = wants_spectrum_ && wants_fit() && kind.whole &&
-                      spectrum_.shared_length() == PowerPart::kBlock;
-  if (wants_spectrum_) sums.spectrum = spectrum_.take(samples, shares ? &bins : nullptr);
+                      spectrum().shared_length() == PowerPart::kBlock;
+  if (wants_spectrum_) sums.spectrum = spectrum().take(samples, shares ? &bins : nullptr);
   if (!wants_fit()) return sums;
   sums.record.plain = fitted_sums(samples, kind, blocks_, shares ? &bins : nullptr);
   kind.whole = false;
@@ -149,7 +154,7 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
 void LeafStage::join(ChannelSums& sums, ChannelSums later) {
   sums.meters.quality.join(later.meters.quality);
   sums.meters.trace.join(std::move(later.meters.trace));
-  if (wants_spectrum_) spectrum_.join(sums.spectrum, later.spectrum);
+  if (wants_spectrum_) spectrum().join(sums.spectrum, later.spectrum);
   detail::join(sums.record, std::move(later.record));
   libchar::join(sums.digital, later.digital);
 }
@@ -179,7 +184,7 @@ ChannelSums LeafStage::read_state(StateReader& from) const {
   sums.meters.trace.read_state(from);
   sums.kept = from.reals();
   if (sums.kept.size() > kLeafSamples) from.refuse("the samples of a leaf");
-  sums.spectrum = spectrum_.read_state(from);
+  sums.spectrum = spectrum().read_state(from);
   sums.record = read_record_sums(from);
   sums.digital = read_digital_sums(from);
   sums.types.resize(from.count(24));

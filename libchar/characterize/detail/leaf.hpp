@@ -3,6 +3,7 @@
 // they find depends on its samples only; and two neighbours made one.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -73,10 +74,13 @@ class LeafStage {
 
  private:
   bool is_phase() const { return options_->data == SampleKind::phase; }
+  WelchParts& spectrum() const;
   bool wants_fit() const { return options_->wanted.fit || options_->wanted.allan; }
 
   const CharacterizeOptions* options_;
-  WelchParts spectrum_;
+  WelchWorkspace* workspace_;
+  /// Its plan and window are of 1.5 MB: made for the first leaf, which thousands of short channels never fill.
+  mutable std::optional<WelchParts> spectrum_;
   bool wants_spectrum_ = false;  ///< from leaves
   BlockTransforms blocks_;       ///< of the fit, where the spectrum has others
   std::vector<double> rate_;     // scratch
