@@ -115,15 +115,26 @@ std::string settings_text(const Finding::Help& help) {
   return out.empty() ? out : out + ")";
 }
 
-std::string with_help(const Finding& one) {
-  std::string out = printable(one.sentence);
+namespace {
+
+/// The remedies behind a sentence; `all`: those too that no option does.
+std::string remedies_behind(const Finding& one, bool all) {
+  std::string out;
   for (const Finding::Help& help : one.help) {
+    if (!all && help.options.empty()) continue;
+    const std::string& before = out.empty() ? one.sentence : out;
     std::string what = help.sentence;
     if (what.ends_with('.')) what.pop_back();
-    out += (out.ends_with('.') || out.ends_with('?') ? " " : ". ") +
+    out += (before.ends_with('.') || before.ends_with('?') ? " " : ". ") +
            printable(what + settings_text(help)) + ".";
   }
   return out;
+}
+
+}  // namespace
+
+std::string with_help(const Finding& one) {
+  return printable(one.sentence) + remedies_behind(one, true);
 }
 
 std::string findings_text(std::span<const Finding> findings, std::size_t most, bool colours) {
@@ -154,15 +165,7 @@ std::string sentence_of(const Finding& one) {
 }
 
 std::string detail::help_of(const Finding& one) {
-  std::string out;
-  for (const Finding::Help& help : one.help)
-    if (!help.options.empty()) {
-      std::string what = help.sentence;
-      if (what.ends_with('.')) what.pop_back();
-      out += (one.sentence.ends_with('.') || !out.empty() ? " " : ". ") +
-             printable(what + settings_text(help)) + ".";
-    }
-  return out;
+  return remedies_behind(one, false);
 }
 
 std::string one_line(const Finding& one, std::string_view file, bool colours) {
