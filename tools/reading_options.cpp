@@ -86,14 +86,14 @@ void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
 void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
   const std::string csv = "Reading CSV";
   verb.add_texts("--where",
-                 options.where,
+                 options.kinds.where,
                  "only the rows with this value, such as sensor=Gyroscope; repeat it for several "
                  "columns (default: all rows)")
       .one_value_each()
       .value_name("COLUMN=VALUE")
       .group(csv);
   verb.add_text("--group-by",
-                options.group_by,
+                options.kinds.group_by,
                 "column whose values become channels of their own (default: none)")
       .value_name("COLUMN")
       .group(csv);
@@ -265,8 +265,9 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   list("--units", options.units);
   list("--scale", options.channel_scale);
   list("--unit", options.channel_unit);
-  for (const std::string& where : options.where) flags += " --where " + libchar::shell_word(where);
-  word("--group-by", options.group_by, usual.group_by);
+  for (const std::string& where : options.kinds.where)
+    flags += " --where " + libchar::shell_word(where);
+  word("--group-by", options.kinds.group_by, usual.kinds.group_by);
   word("--date-order", options.date_order, usual.date_order);
   number("--from", options.from_s, "s");
   number("--to", options.to_s, "s");

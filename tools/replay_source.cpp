@@ -76,23 +76,33 @@ SceneAlign align_from_words(const std::string& text, const Scene& scene) {
   return align;
 }
 
+void set_grid(const ReplaySource& source, Scene& scene) {
+  if (!source.prepare.resample_hz) return;
+  if (scene.simulate)
+    throw usage_error("E0910", "--resample").says("a simulation has an even grid");
+  if (scene.reading.rate_hz)
+    throw usage_error("E0910", "--resample")
+        .says("goes by the stamps of the log, --rate is for logs without stamps");
+  scene.resample_hz = source.prepare.resample_hz;
+}
+
 // What is said replaces the scene's own; a band is a filter of its own.
 void set_preparation(const ReplaySource& source, Scene& scene) {
   ScenePreparation& p = scene.preparation;
-  if (!source.detrend.empty()) p.detrend = source.detrend;
-  if (source.high_pass_hz) {
-    p.from_hz = *source.high_pass_hz;
+  if (!source.prepare.detrend.empty()) p.detrend = source.prepare.detrend;
+  if (source.prepare.high_pass_hz) {
+    p.from_hz = *source.prepare.high_pass_hz;
     p.to_hz = 0;
   }
-  if (!source.band.empty()) {
-    const Interval band = parse_range(source.band, RangeOf::rate_hz, "--band");
+  if (!source.prepare.band.empty()) {
+    const Interval band = parse_range(source.prepare.band, RangeOf::rate_hz, "--band");
     p.from_hz = band.low;
     p.to_hz = std::isinf(band.high) ? 0 : band.high;  // 0: a high-pass filter
   }
-  const char* option = !source.band.empty()      ? "--band"
-                       : source.high_pass_hz     ? "--high-pass"
-                       : !source.detrend.empty() ? "--detrend"
-                                                 : "--reference-offset";
+  const char* option = !source.prepare.band.empty()      ? "--band"
+                       : source.prepare.high_pass_hz     ? "--high-pass"
+                       : !source.prepare.detrend.empty() ? "--detrend"
+                                                         : "--reference-offset";
   if (const std::string why = why_not_prepared(scene); !why.empty())
     throw usage_error("E0910", option).says(why);
 }
@@ -228,18 +238,22 @@ void add_window(VerbOptions& options,
 }
 
 void add_preparation_options(VerbOptions& options, ReplaySource& source) {
+  options.add_rate("--resample",
+                   source.prepare.resample_hz,
+                   "interpolate each channel by its own stamps to an even grid of this rate, for "
+                   "uneven stamps and channels of unlike rates (default: the scene's)");
   options.add_choice("--detrend",
-                     source.detrend,
+                     source.prepare.detrend,
                      {"none", "mean", "line"},
                      "subtract this from each sensor and the reference, of the whole recording "
                      "(default: the scene's)");
   const Option high_pass =
       options.add_rate("--high-pass",
-                       source.high_pass_hz,
+                       source.prepare.high_pass_hz,
                        "one high-pass for all sensors and the reference (default: the scene's)");
   options
       .add_text("--band",
-                source.band,
+                source.prepare.band,
                 "instead: from one frequency to another, in Hz (default: the scene's)")
       .value_name("LOW..HIGH")
       .excludes(high_pass);
@@ -321,6 +335,7 @@ Scene read_replay_source(const ReplaySource& source, const std::string& scene_fi
     scene.align = align_from_words(source.align, scene);
   }
   set_reference(source, scene);
+  set_grid(source, scene);
   set_preparation(source, scene);
   set_faults(source, scene);
   return scene;

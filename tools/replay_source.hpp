@@ -19,8 +19,11 @@ struct ReplaySource {
   std::vector<std::string> sensors, reference, models;
   std::string reference_log, models_folder;
   // of either, over what the scene says
-  std::string learning, evaluation, rest, align, detrend, band, reference_lag, reference_offset;
-  std::optional<double> high_pass_hz;
+  struct Preparation {
+    std::string detrend, band;
+    std::optional<double> resample_hz, high_pass_hz;
+  } prepare;
+  std::string learning, evaluation, rest, align, reference_lag, reference_offset;
   std::optional<double> warm_up_s;
   std::vector<std::string> faults;
   bool no_faults = false;

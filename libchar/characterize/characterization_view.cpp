@@ -114,6 +114,13 @@ std::vector<TraceMark> trace_marks(const ChannelResult& channel, const std::stri
                      change.at_s,
                      fmt::format("noise × {}", number_text(change.factor, 3))});
   if (!channel.fit) return out;
+  if (const Stationarity& found = channel.fit->stationarity; !found.steady) {
+    const auto add = [&](const char* kind, const Interval& at, double times) {
+      out.push_back({kind, at.low, at.high, fmt::format("{} (× {})", kind, number_text(times, 3))});
+    };
+    add("quietest", found.smallest_s, found.smallest);
+    add("loudest", found.largest_s, found.largest);
+  }
   for (const Event& event : channel.fit->events)
     out.push_back(mark_of(event, channel.fit->duration_s, unit));
   return out;

@@ -164,6 +164,20 @@ struct Judge {
   }
 };
 
+/// What is recorded is no noise: the channel is of no use, and that it has no fit and no curve needs no saying.
+void drop_what_follows(std::vector<Finding>& found) {
+  for (const char* cause : {"no_value", "constant", "counter", "moves_throughout"}) {
+    const auto one = std::ranges::find(found, cause, &Finding::code);
+    if (one == found.end()) continue;
+    one->severity = Severity::bad;
+    std::erase_if(found, [](const Finding& other) {
+      return other.code == "no_fit" || other.code == "not_computed" ||
+             other.code == "missing_samples";
+    });
+    return;
+  }
+}
+
 }  // namespace
 
 std::string_view rating_word(Rating rating) {
@@ -181,6 +195,7 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
   found.look_at_samples(channel.quality);  // the rest may follow from them
   if (channel.fit) found.look_at_fit(*channel.fit);
   if (channel.verification) found.look_at_verification(*channel.verification);
+  if (!channel.fit) drop_what_follows(found.out);
   // Heavy tails of the differences are the alarm, and these are what it was about.
   for (const char* cause : {"spikes_left_out",
                             "spikes_kept",

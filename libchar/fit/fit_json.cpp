@@ -360,8 +360,11 @@ Json noise_fit_json(const std::string& name,
   return json_of(entries);
 }
 
-Json no_fit_json(const std::string& name, const std::string& unit) {
+Json no_fit_json(const std::string& name,
+                 const std::string& unit,
+                 const std::vector<Finding>& why) {
   NoiseFit none;
+  none.findings = why;
   Json json = noise_fit_json(name, unit, none);
   json["goodness"] = nullptr;
   return json;

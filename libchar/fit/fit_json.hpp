@@ -22,8 +22,10 @@ Json noise_fit_json(const std::string& name,
                     const NoiseFit& fit,
                     bool with_residuals = false);
 
-/// The place of a channel that could not be fitted: every term not_fitted, no goodness.
-Json no_fit_json(const std::string& name, const std::string& unit);
+/// The place of a channel that could not be fitted: every term not_fitted, no goodness, and why.
+Json no_fit_json(const std::string& name,
+                 const std::string& unit,
+                 const std::vector<Finding>& why = {});
 
 /// {"format":"noise-fit","version":1,"density_sides":"two","channels":[…]}
 Json noise_fit_document(Json channels);

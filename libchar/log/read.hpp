@@ -22,6 +22,14 @@ struct ReadOptions {
     bool bad_rows = false;  ///< rows that cannot be read are left out, of ten one at most (CSV)
   };
 
+  /// Rows of several kinds in one table (CSV).
+  struct Kinds {
+    /// "sensor=Gyroscope": only rows with this in that column; all of them must hold
+    std::vector<std::string> where;
+    std::string group_by;     ///< a column whose values become channels of their own; "" = none
+    bool own_stamps = false;  ///< each group keeps its stamps; else groups in turn share a row
+  };
+
   std::vector<std::string>
       channels;  ///< names or c0, c1… to read, "!name" not to; empty = all. Unknown: Error(usage), the nearest
   std::string
@@ -36,9 +44,7 @@ struct ReadOptions {
   std::vector<std::string>
       channel_scale;  ///< "gx=1/16.4", "gyro*=0.05": factors of channels, by name or pattern; the last that fits wins
   std::vector<std::string> channel_unit;  ///< "gx=deg/s": units of channels, likewise
-  std::vector<std::string>
-      where;  ///< "sensor=Gyroscope": only rows with this in that column (CSV); all of them must hold
-  std::string group_by;  ///< a column whose values become channels of their own (CSV); "" = none
+  Kinds kinds;
   std::string date_order =
       "auto";                    ///< "auto", "day", "month": which comes first in 05/01/2024 (CSV)
   std::optional<double> from_s;  ///< first instant to use, seconds after the first stamp

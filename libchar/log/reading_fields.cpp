@@ -64,9 +64,9 @@ Fields<ReadOptions> table_fields() {
           "channel_unit",
           {.meaning = "units of channels, NAME=UNIT, by name or pattern",
            .otherwise = "as in the log"}),
-      field<&ReadOptions::where>(
+      field<&ReadOptions::kinds, &ReadOptions::Kinds::where>(
           "where", {.meaning = "COLUMN=VALUE: only rows with it (CSV)", .otherwise = "all rows"}),
-      field<&ReadOptions::group_by>(
+      field<&ReadOptions::kinds, &ReadOptions::Kinds::group_by>(
           "group_by",
           {.meaning = "column whose values become channels of their own (CSV)",
            .otherwise = "none"}),

@@ -181,6 +181,9 @@ void finish_record(DeviceRecord& record) {
   use_thermometer(record);
   if (std::string why = why_nothing_fitted(record); !why.empty()) {
     record.problem = std::move(why);
+    for (const RecordedChannel& channel : record.channels)
+      record.findings.insert(
+          record.findings.end(), channel.findings.begin(), channel.findings.end());
     record.channels.clear();
   }
 }

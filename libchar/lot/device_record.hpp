@@ -62,6 +62,7 @@ struct DeviceRecord {
   std::vector<std::string> warnings;  ///< what was dirty in its log and what was done, in sentences
   bool awaited = false;  ///< `problem` is that the result is not there yet; not in the text
   std::vector<RecordedChannel> channels;
+  std::vector<Finding> findings;  ///< of the channels, where none could be fitted; not in the text
   bool operator==(const DeviceRecord&) const = default;
 };
 

@@ -273,16 +273,20 @@ std::vector<std::string> warnings_note(std::span<const DeviceRecord> records,
 std::vector<Finding> known_of(std::span<const DeviceRecord> records,
                               std::span<const std::size_t> order) {
   std::map<std::string, std::pair<Finding, std::vector<std::string>>> kinds;
-  for (const std::size_t r : order)
+  const auto count = [&](const std::vector<Finding>& findings, const std::string& device) {
+    for (const Finding& one : findings) {
+      if (one.severity == Severity::note) continue;
+      auto& [kind, devices] =
+          kinds.try_emplace(one.code, one, std::vector<std::string>{}).first->second;
+      kind.severity = std::max(kind.severity, one.severity);
+      if (devices.empty() || devices.back() != device) devices.push_back(device);
+    }
+  };
+  for (const std::size_t r : order) {
     for (const RecordedChannel& channel : records[r].channels)
-      for (const Finding& one : channel.findings) {
-        if (one.severity == Severity::note) continue;
-        auto& [kind, devices] =
-            kinds.try_emplace(one.code, one, std::vector<std::string>{}).first->second;
-        kind.severity = std::max(kind.severity, one.severity);
-        if (devices.empty() || devices.back() != records[r].device)
-          devices.push_back(records[r].device);
-      }
+      count(channel.findings, records[r].device);
+    count(records[r].findings, records[r].device);
+  }
   std::vector<Finding> out;
   for (auto& [code, found] : kinds) {
     auto& [kind, devices] = found;

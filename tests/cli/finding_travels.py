@@ -5,6 +5,7 @@ it stands: it mends, and leads in no circle.
 
 usage: finding_travels.py PROGRAM ROOT PART [CODE…]    (--cells: prints every cell)
 """
+import functools
 import html
 import json
 import os
@@ -98,13 +99,21 @@ def check_sentence(code, finding):
             faults.append(f"{code}: no sentence: {sentence!r}")
 
 
-def flags_in(text, finding):
-    """The options that stand beside a finding, each as the terminal prints it."""
+@functools.cache
+def help_of(verb):
+    return subprocess.run([program, verb, "--help"], capture_output=True, text=True).stdout
+
+
+def flags_in(text, finding, verb):
+    """The options of the verb that stand beside a finding, each as the terminal prints it."""
     out = set()
     for line in text.splitlines():
         if says(line, finding):
             out |= {flags_of(flags) for flags in re.findall(r"\((--[^()]*)\)", line)}
-    return sorted(out)
+    for flags in out:
+        if finding["code"] not in rules.OF_ANOTHER_VERB and flags[0].split("=")[0] not in help_of(verb):
+            faults.append(f"{finding['code']}: {verb} has no option {flags[0]}, which stands beside it")
+    return sorted(flags for flags in out if flags[0].split("=")[0] in help_of(verb))
 
 
 class Case:
@@ -167,7 +176,7 @@ class Log(Case):
         text = run(self.folder, verb, *words)
         said = text.stdout + text.stderr
         cell(self.code, verb, "text", says(said, one or self.finding))
-        for flags in flags_in(said, one or self.finding):
+        for flags in flags_in(said, one or self.finding, verb):
             self.mends_there(verb, words, flags)
         if verb == "inspect" and self.severity == "note":
             called = any("warning:" in line and says(line, self.finding) for line in said.splitlines())
@@ -234,7 +243,8 @@ class Log(Case):
                 cell(self.code, verb, "text", False, self.why("plot"))
             return
         figure = run(self.folder, "plot", self.out, "-o", "figure.svg", "--force")
-        cell(self.code, "plot", "text", says(figure.stdout + figure.stderr, self.finding))
+        none = next((f"there is no figure: {why}" for code, why in rules.NO_FIGURE.items() if code in figure.stderr), "")
+        cell(self.code, "plot", "text", says(figure.stdout + figure.stderr, self.finding), none)
         both = run(self.folder, "compare", self.out, self.out)
         cell(self.code, "compare", "text", says(both.stdout + both.stderr, self.finding))
         cell(self.code, "compare", "JSON", found(document(run(self.folder, "compare", self.out, self.out, "--json")),
@@ -263,8 +273,9 @@ class Log(Case):
         if ran.returncode != 0:
             return faults.append(f"{self.code}: {failure(ran)}")
         report = json.loads((self.folder / "weighed/report.json").read_text())
-        cell(self.code, "replay of its model", "JSON", found(report, self.code) is not None)
-        return cell(self.code, "replay of its model", "text", says(ran.stdout + ran.stderr, self.finding))
+        one = found(report, self.code)
+        cell(self.code, "replay of its model", "JSON", one is not None)
+        return cell(self.code, "replay of its model", "text", says(ran.stdout + ran.stderr, one or self.finding))
 
     def all_verbs(self):
         if not self.characterize():
@@ -300,15 +311,26 @@ class Log(Case):
 
     def remedies(self):
         """Every option that is printed with the finding, and every next line, run as it stands."""
-        tried = flags_in(self.said.stdout + self.said.stderr, self.finding)
+        tried = flags_in(self.said.stdout + self.said.stderr, self.finding, "characterize")
         for help_ in self.finding.get("remedies", []):
-            if help_.get("options") and not tried:
+            if help_.get("options") and not tried and self.code not in rules.OF_ANOTHER_VERB:
                 self.fault_of("remedy", f"the terminal does not print {help_}")
         for flags in tried:
             self.mends(flags)
         self.follow(next_line(self.said.stdout))
+        if self.code in rules.OF_ANOTHER_VERB:
+            self.mends_elsewhere(rules.OF_ANOTHER_VERB[self.code])
         for code in self.made.never:
             self.fault_of(f"beside {code}", "both are said" if found(self.judged, code) else "")
+
+    def mends_elsewhere(self, words):
+        """The finding and its option in the verb that has it: its next line is that option, and mends."""
+        ran = run(self.folder, words[0], self.log, *self.made.options, *words[1:], "-o", "elsewhere")
+        self.fault_of(f"text of {words[0]}", "" if says(ran.stdout + ran.stderr, self.finding) else failure(ran))
+        again = run(self.folder, *shlex.split(next_line(ran.stdout)), "--json")
+        left = found(document(again), self.code)
+        self.fault_of(f"remedy of {words[0]}",
+                      failure(again) if again.returncode != 0 else left["sentence"] if left else "")
 
     def mends(self, flags):
         global remedies

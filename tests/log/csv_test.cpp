@@ -534,7 +534,7 @@ TEST_CASE("what is not read is recognised, with the way to a table") {
 
 TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   ReadOptions options;
-  options.group_by = "id";
+  options.kinds.group_by = "id";
   const Recording same =
       read_text("t [s],id,x,y\n0,a,1,10\n0,b,2,20\n1,a,3,30\n2,a,5,50\n2,b,6,60\n", options);
   CHECK(names(same) == Names{"a_x", "a_y", "b_x", "b_y"});
@@ -560,14 +560,24 @@ TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
       read_text("t [s],id,x\n0,a,1\n0.1,b,2\n1,a,3\n1.1,b,4\n2,a,5\n2.1,b,6\n", options);
   CHECK(turns.samples[1] == std::vector<double>{2, 4, 6});
   CHECK(turns.info.time.rate_hz == Approx(1));
+  const Finding* apart = turns.info.warnings.find("stamps_apart");
+  REQUIRE(apart != nullptr);
+  CHECK(apart->where.rows == std::vector<std::string>{"b 100 ms behind a"});
+  CHECK(apart->help[0].options[0].value == "1");
+  options.kinds.own_stamps = true;
+  const Recording own =
+      read_text("t [s],id,x\n0,a,1\n0.1,b,2\n1,a,3\n1.1,b,4\n2,a,5\n2.1,b,6\n", options);
+  CHECK(own.info.rows == 6);
+  CHECK(own.info.warnings.find("stamps_apart") == nullptr);
+  options.kinds.own_stamps = false;
   CHECK_THAT(failure("t,id,x\n0,a,1\n1,a,2\n2,a,3\n0,b,1\n1,b,2\n", options),
              Catch::Contains("E0328") && Catch::Contains("`where` id=a"));
   options = {};
-  options.where = {"id=b"};
+  options.kinds.where = {"id=b"};
   const Recording one = read_text("t,id,x\n0,a,1\n0,b,2\n1,a,3\n1,b,4\n2,a,5\n2,b,6\n", options);
   CHECK(one.samples == std::vector<std::vector<double>>{{2, 4, 6}});
-  options.where = {"id=c"};
+  options.kinds.where = {"id=c"};
   CHECK_THAT(failure("t,id,x\n0,a,1\n0,b,2\n", options), Catch::Contains("E0328"));
-  options.where = {"no=c"};
+  options.kinds.where = {"no=c"};
   CHECK_THAT(failure("t,id,x\n0,a,1\n0,b,2\n", options), Catch::Contains("E0320"));
 }

@@ -314,7 +314,7 @@ std::vector<Export> phone_exports() {
                  {0, 1, 0.2, 0.3},
                  "time column: time",
                  false,
-                 [](ReadOptions& o) { o.where = {"sensor=Gyroscope"}; }});
+                 [](ReadOptions& o) { o.kinds.where = {"sensor=Gyroscope"}; }});
   return out;
 }
 
@@ -526,7 +526,7 @@ std::vector<Export> bench_exports() {
                  "",
                  false,
                  [](ReadOptions& o) {
-                   o.group_by = "_field";
+                   o.kinds.group_by = "_field";
                    o.channels = {"_value"};
                  }});
   out.push_back({"Grafana",

@@ -312,6 +312,30 @@ TEST_CASE("instants: a reference angle is interpolated the short way round") {
   truth(kHead + "recording: {file: log.csv, resample_hz: 1.7}\nreference: angle\n" + scene);
 }
 
+TEST_CASE("resampling: devices that are sampled in turn each go by their own stamps") {
+  const test::SceneBench bench;
+  std::string log = "t[s],id,v\n";
+  for (int k = 0; k < 60; ++k)
+    for (const int second : {0, 1}) {
+      const double t = 10 * k + 4 * second;
+      if (k % 10 != 7 || second == 0)
+        log += fmt::format("{},{},{}\n", t, second == 0 ? "a" : "b", 2 * t);
+    }
+  bench.put("log.csv", log);
+  ReadOptions reading;
+  reading.kinds.group_by = "id";
+  const ResampledLog even =
+      read_resampled(bench.path("log.csv"), reading, {"a", "b"}, 0.1, 2, no_progress());
+  REQUIRE(even.samples.size() == 2);
+  CHECK(std::isnan(even.samples[1][0]));  // before its first
+  for (std::size_t i = 1; i + 1 < even.samples[1].size(); ++i) {
+    CHECK(even.samples[0][i] == Approx(20.0 * static_cast<double>(i)));
+    CHECK(even.samples[1][i] == Approx(20.0 * static_cast<double>(i)));
+  }
+  CHECK(even.log.warnings.find("slow_channel") == nullptr);
+  CHECK(even.log.warnings.find("stamps_apart") == nullptr);
+}
+
 TEST_CASE("resample_hz goes by stamps that are dates as by numbers") {
   const test::SceneBench bench;
   std::string numbers = "t[s],a\n", dates = "time,a\n";

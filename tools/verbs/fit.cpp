@@ -37,7 +37,16 @@ struct FitVerb {
   AnalysisOptions analysis;
 };
 
-std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& log) {
+/// What is known of a channel without a fit.
+struct Unfitted {
+  Channel channel;
+  std::vector<Finding> findings;
+};
+
+std::vector<ChannelFit> fit_log(Session& session,
+                                const FitVerb& verb,
+                                LogInfo& log,
+                                std::vector<Unfitted>& unfitted) {
   CharacterizeOptions options = finish(verb.analysis);
   options.wanted = {
       .quality = false, .allan = options.fit.second_opinion, .spectrum = false, .fit = true};
@@ -49,6 +58,7 @@ std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& 
     std::vector<Finding> found = findings_of(c);
     if (!c.fit) {
       report_findings(session, c.channel.name, found);
+      unfitted.push_back({c.channel, std::move(found)});
       continue;
     }
     fits.push_back({c.channel, std::move(*c.fit)});
@@ -117,8 +127,9 @@ void run_fit(Session& session, const FitVerb& verb) {
   foresee_output(verb.output, {verb.input}, verb.force);
   if (!verb.models.empty()) foresee_models(verb);
   LogInfo log;
+  std::vector<Unfitted> unfitted;
   const std::vector<ChannelFit> fits =
-      verb.curve == "none" ? fit_log(session, verb, log) : fit_curves(session, verb, log);
+      verb.curve == "none" ? fit_log(session, verb, log, unfitted) : fit_curves(session, verb, log);
   session.terminal.clear();
   report_warnings(session, log);
   if (fits.empty())
@@ -134,6 +145,8 @@ void run_fit(Session& session, const FitVerb& verb) {
     Json channels = Json::array();
     for (const ChannelFit& c : fits)
       channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
+    for (const Unfitted& c : unfitted)
+      channels.push_back(no_fit_json(c.channel.name, c.channel.unit, c.findings));
     document.update(noise_fit_document(std::move(channels)));
     if (log.stretch_s) document["stretch_s"] = {log.stretch_s->low, log.stretch_s->high};
     text = dump_json(document);

@@ -185,8 +185,10 @@ std::string next_after(const Session& session,
                        const ReplayVerb& verb,
                        const Scene& scene,
                        const ReplayResult& result) {
-  if (const std::string mended = mended_command(session, result.warnings.list(), verb.folder);
-      !mended.empty())
+  std::vector<Finding> found = result.warnings.list();
+  for (const LogInfo& log : result.logs)
+    for (const Finding& one : log.warnings.list()) found.push_back(one);
+  if (const std::string mended = mended_command(session, found, verb.folder); !mended.empty())
     return mended;
   if (result.learnt.recommended.empty() || scene.recording.empty() || result.logs.empty())
     return "";

@@ -9,6 +9,7 @@
 
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/rows/stamps.hpp"
@@ -18,6 +19,7 @@ namespace libchar::csv {
 namespace {
 
 constexpr std::size_t kMostKinds = 64, kMostNumbers = 16;
+constexpr double kApart = 0.02;  ///< of a turn: closer stamps are those of one instant
 
 bool names_kinds(std::string_view name) {
   static constexpr std::array<std::string_view, 22> kNames = {
@@ -139,13 +141,60 @@ std::size_t column_named(const std::string& wanted, const Dialect& dialect, cons
       .hint(did_you_mean(nearest(wanted, names), "it has " + first_names(names)));
 }
 
+// Groups that come in turn: how long behind the first of its turn each is stamped, and from one turn to the next.
+struct Turns {
+  std::vector<double> behind_s;
+  double period_s = 0;
+};
+
+Turns turns_of(const std::vector<Cells>& rows, const Dialect& dialect) {
+  const std::size_t n = dialect.groups.size();
+  std::vector<std::vector<double>> behind(n);
+  std::vector<double> periods;
+  std::optional<std::int64_t> first;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto stamp = stamp_of(rows[i], dialect);
+    if (i % n == 0) {
+      if (first && stamp) periods.push_back(static_cast<double>(*stamp - *first) / 1e9);
+      first = stamp;
+    } else if (first && stamp) {
+      behind[i % n].push_back(static_cast<double>(*stamp - *first) / 1e9);
+    }
+  }
+  const auto middle = [](std::vector<double>& some) {
+    return some.empty() ? 0 : median_in_place(some, Middle::lower);
+  };
+  Turns out{std::vector<double>(n), middle(periods)};
+  std::transform(behind.begin(), behind.end(), out.behind_s.begin(), middle);
+  return out;
+}
+
+// A row holds samples of several instants.
+void say_apart(const Turns& turns, const Dialect& dialect, Findings& findings) {
+  for (std::size_t k = 1; k < turns.behind_s.size(); ++k)
+    if (turns.behind_s[k] > kApart * turns.period_s)
+      findings.add("stamps_apart",
+                   "channels of one row never share a stamp: they were sampled one after the other",
+                   fmt::format("{} {} behind {}",
+                               dialect.groups[k],
+                               duration_text(turns.behind_s[k]),
+                               dialect.groups[0]));
+  const Finding* said = findings.find("stamps_apart");
+  if (said == nullptr) return;
+  const double period = turns.period_s;
+  findings.add("stamps_apart", "", {}, 0)
+      .help.push_back(
+          {"A replay interpolates each by its own stamps to one grid.",
+           {{"resample_hz", period > 1 ? "1/" + shortest(period) : shortest(1 / period)}}});
+}
+
 }  // namespace
 
 std::vector<RowFilter> filters_of(const ReadOptions& options,
                                   const Dialect& dialect,
                                   const LogInfo& info) {
   std::vector<RowFilter> out;
-  for (const std::string& word : options.where) {
+  for (const std::string& word : options.kinds.where) {
     const std::size_t sign = word.find('=');
     if (sign == std::string::npos || sign == 0)
       throw usage_error("E0202", "`where`")
@@ -162,15 +211,15 @@ std::vector<RowFilter> filters_of(const ReadOptions& options,
 void choose_groups(const std::vector<Cells>& rows,
                    const ReadOptions& options,
                    Dialect& dialect,
-                   const LogInfo& info) {
-  if (options.group_by.empty()) return;
-  const std::size_t column = column_named(options.group_by, dialect, info);
+                   LogInfo& info) {
+  if (options.kinds.group_by.empty()) return;
+  const std::size_t column = column_named(options.kinds.group_by, dialect, info);
   dialect.group_column = static_cast<int>(column);
   dialect.groups = values_of(rows, column);
   if (dialect.groups.size() > kMostKinds)
     throw usage_error("E0328", info.file)
         .says("more than {} values stand in the column of `group_by`", kMostKinds)
-        .got(options.group_by)
+        .got(options.kinds.group_by)
         .hint("a column of names of sensors was expected");
   std::size_t changes = 0;
   bool cyclic = true, together = true;
@@ -182,12 +231,14 @@ void choose_groups(const std::vector<Cells>& rows,
     if (dialect.time.column >= 0 && i % n != 0)
       together = together && stamp_of(rows[i], dialect) == stamp_of(rows[i - 1], dialect);
   }
-  dialect.cycles = n > 1 && cyclic && !together;
+  dialect.cycles = n > 1 && cyclic && !together && !options.kinds.own_stamps;
+  if (dialect.cycles && dialect.time.column >= 0)
+    say_apart(turns_of(rows, dialect), dialect, info.warnings);
   if (n > 1 && changes < n && rows.size() > 2 * n)
     throw usage_error("E0328", info.file)
         .says("the rows of one kind come behind those of another, and are not side by side: " +
               first_names(dialect.groups))
-        .hint("`where` {}={} reads one of them", options.group_by, dialect.groups[0]);
+        .hint("`where` {}={} reads one of them", options.kinds.group_by, dialect.groups[0]);
 }
 
 void refuse_long_table(const std::vector<Cells>& rows,
@@ -195,7 +246,7 @@ void refuse_long_table(const std::vector<Cells>& rows,
                        const ReadOptions& options,
                        Dialect& dialect,
                        const LogInfo& info) {
-  if (!options.where.empty() || !options.group_by.empty()) return;
+  if (!options.kinds.where.empty() || !options.kinds.group_by.empty()) return;
   const bool timed = dialect.time.column >= 0;
   if (!timed && !options.channels.empty()) return;
   // Words first: they say more than the numbers beside them.

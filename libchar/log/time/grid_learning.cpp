@@ -158,10 +158,8 @@ void TimeGrid::say_pattern(const StampModel& found) {
     case StampPattern::uneven:
       warnings_.add("uneven_stamps",
                     fmt::format("the stamps take turns in steps of unlike length and keep to one "
-                                "line: rows are spaced evenly at {} Hz, rows over time (`rate_hz` "
-                                "{}, the rate of the shorter steps, takes the rest as gaps)",
-                                brief_text(span_hz, 5),
-                                shortest(rounded(step_hz, 5))));
+                                "line: rows are spaced evenly at {} Hz, rows over time",
+                                brief_text(span_hz, 5)));
       return;
     case StampPattern::disputed:
       fail(pending_.front(),

@@ -4,7 +4,7 @@ import random
 import subprocess
 
 from . import parts
-from .parts import Input, N, RATE, SD, csv_text, gyro, noise, raw, text
+from .parts import Input, N, RATE, SD, gyro, noise, raw
 
 
 def simulated(name, rate=RATE, samples=60000, seed=1, more="", **terms):
@@ -135,12 +135,10 @@ def fitted_model(name, samples, **terms):
     return Input(simulated(name, samples=samples, **terms), ("--rate", "100"), made_by="fit")
 
 
-def counting():
-    return csv_text({"w[deg/s]": noise(3000), "count": [float(i) for i in range(3000)]})
-
-
-def switched_off():
-    return {"gyro": ("deg/s", noise(3000)), "off": ("deg/s", [math.nan] * 3000)}
+def hardly_there():
+    """A channel with four samples, far apart."""
+    few = {0: 0.3, 900: 0.1, 1700: 0.4, 2600: 0.2}
+    return {"gyro": ("deg/s", noise(3000)), "off": ("deg/s", [few.get(i, math.nan) for i in range(3000)])}
 
 
 def clock_of(unit, mean, sd):
@@ -185,8 +183,8 @@ INPUTS = {
     "frequency_mean": Input(raw("frequency", clock_of("Hz", 10e6, 1e-3), rate=1), made_by="characterize",
                             analysis=("--data", "frequency"),
                             not_in={"psd": "it takes samples for the quantity itself"}),
-    "no_fit": Input(text("no_fit.csv", counting), made_by="characterize"),
-    "not_computed": Input(raw("not_computed", switched_off), made_by="characterize"),
+    "no_fit": Input(raw("no_fit", hardly_there), made_by="characterize"),
+    "not_computed": Input(raw("not_computed", hardly_there), made_by="characterize"),
     "simulation_disagrees": Input(gyro("again", lambda: spikes(0.04, 40)), made_by="characterize",
                                   analysis=("--verify",), not_in=ONLY_VERIFY),
 }

@@ -2,18 +2,6 @@
 
 # verb, how, why it fails, codes
 KNOWN = [
-    ("replay of its model", ("text",), "replay weighs by models and says nothing of what is known of them",
-     "slow_channel"),
-    ("fit", ("JSON",), "the document holds what the fit found, not what is judged of the channel",
-     "counter no_value"),
-    ("lot", ("JSON",), "a lot neither counts nor lists findings",
-     "constant moves_throughout"),
-    ("plot", ("text",), "plot says nothing of what it draws",
-     "counter looks_transposed"),
-    ("psd", ("JSON", "text"), "psd does not look at the quality of the samples",
-     "no_value"),
-    ("remedy", ("remedy of psd",), "a rate that leaves no samples together",
-     "uneven_stamps"),
 ]
 
 

@@ -19,10 +19,18 @@ PRINTS = {
     "simulate": OF_A_CURVE,
     "convert": {"values", "time", "rate", "scale"},
 }
+# Findings whose option belongs to one verb, and what that verb is told.
+OF_ANOTHER_VERB = {
+    "stamps_apart": ("replay", "--sensors", "A,B"),
+}
+# Errors of `plot` behind which nothing is drawn.
+NO_FIGURE = {"E0976": "unlike units share no axis", "E0984": "too many curves"}
 READS = ("inspect", "allan", "psd", "fit", "characterize", "page", "convert")  # the log itself
 WEIGHS = ("export", "plot", "compare", "lot", "simulate")  # say what is doubtful, not what is worth knowing
 # Severities that a maker chooses beside that of the table.
 OTHER_SEVERITIES = {
+    "constant": {"bad"},  # of a channel without a fit
+    "counter": {"bad"},  # likewise
     "motion": {"bad"},  # more than a tenth of N
     "stuck": {"bad"},  # more than a hundredth of the samples
     "not_gravity": {"caution"},  # gravity taken out: nothing says a factor

@@ -38,6 +38,13 @@ def slow():
                      "temp[degC]": [next(temperature) if i % 100 == 0 else None for i in range(10000)]})
 
 
+def in_turn():
+    """Two devices that are sampled one after the other, 2 of 10 s apart."""
+    values = noise(1200)
+    return "t[s],device,v[degC]\n" + "".join(
+        f"{10 * i + 2 * k},{'AB'[k]},{values[2 * i + k]:.5f}\n" for i in range(600) for k in range(2))
+
+
 def plain():
     return "\n".join(gyro_lines()) + "\n"
 
@@ -69,5 +76,6 @@ INPUTS = {
                           not_in={"allan": "it reads the channel alone, and says own_grid"}),
     "own_grid": Input(text("own_grid.csv", slow), made_by="characterize"),
     "own_rows": Input(text("own_rows.csv", slow), ("-c", "temp")),
+    "stamps_apart": Input(text("turns.csv", in_turn), ("--group-by", "device")),
     "stated_rate": Input(text("stated.csv", lambda: "# sample rate: 200 Hz\n" + plain())),
 }

@@ -307,7 +307,7 @@ void gather_rows(Study& study) {
   if (study.rows.empty())
     throw usage_error("E0328", study.info.file)
         .says("no row has the value that is asked for")
-        .got(study.options.where.front())
+        .got(study.options.kinds.where.front())
         .hint("values are compared letter by letter");
 }
 

@@ -83,26 +83,32 @@ std::vector<Column> columns_of(const StampedRows& rows,
   return out;
 }
 
-// Values at i / rate of columns whose rows `used` stand at times `t`; missing within a gap.
-std::vector<std::vector<double>> at_rate(const std::vector<Column>& columns,
-                                         const std::vector<std::size_t>& used,
-                                         const std::vector<double>& t,
-                                         double rate_hz) {
-  const double longest = kLongestStep * median_step(t);
-  const auto instants = static_cast<std::size_t>(std::floor(t.back() * rate_hz)) + 1;
-  std::vector<std::vector<double>> out(columns.size(), std::vector<double>(instants, kMissing));
+// Values at i / rate of a column, through the rows `used` in which it has a sample, which stand at times `t`; missing
+// within a gap and beyond its samples.
+std::vector<double> at_rate(const Column& column,
+                            const std::vector<std::size_t>& used,
+                            const std::vector<double>& t,
+                            std::size_t instants,
+                            double rate_hz) {
+  std::vector<double> times, values;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    const double value = (*column.values)[used[k]];
+    if (std::isnan(value)) continue;
+    times.push_back(t[k]);
+    values.push_back(value);
+  }
+  std::vector<double> out(instants, kMissing);
+  if (times.size() < 2) return out;
+  const double longest = kLongestStep * median_step(times);
   std::size_t k = 0;
   for (std::size_t i = 0; i < instants; ++i) {
     const double now = static_cast<double>(i) / rate_hz;
-    while (k + 2 < t.size() && t[k + 1] <= now) ++k;
-    const double step = t[k + 1] - t[k];
-    if (step > longest && now > t[k]) continue;
-    const double share = (now - t[k]) / step;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      const auto& y = *columns[c].values;
-      const double a = y[used[k]], b = y[used[k + 1]];
-      out[c][i] = share == 0 ? a : between(a, b, share, columns[c].period);
-    }
+    if (now < times.front() || now > times.back()) continue;
+    while (k + 2 < times.size() && times[k + 1] <= now) ++k;
+    const double step = times[k + 1] - times[k];
+    if (step > longest && now > times[k] && now < times[k + 1]) continue;
+    const double share = (now - times[k]) / step;
+    out[i] = share == 0 ? values[k] : between(values[k], values[k + 1], share, column.period);
   }
   return out;
 }
@@ -122,6 +128,7 @@ ResampledLog read_resampled(const std::string& path,
   ReadOptions whole = reading;
   whole.from_s.reset();
   whole.to_s.reset();
+  whole.kinds.own_stamps = true;
   Nothing nothing;
   ResampledLog out;
   out.log = read_log(path, whole, nothing, progress);
@@ -131,6 +138,7 @@ ResampledLog read_resampled(const std::string& path,
         .hint("leave resample_hz out");
   const StampedRows rows = read_stamped_rows(path, of_all_rows(whole), progress);
   out.log.warnings = rows.info.warnings;
+  out.log.warnings.remove("slow_channel");  // each has its own samples here
   const std::vector<double> stamps = seconds_since_first(rows.time_ns);
   const std::vector<std::size_t> used = rows_in_order(stamps, reading, out.log);
   if (used.size() < 2)
@@ -139,9 +147,11 @@ ResampledLog read_resampled(const std::string& path,
   std::vector<double> t;
   t.reserve(used.size());
   for (const std::size_t k : used) t.push_back(stamps[k] - stamps[used[0]]);
-  out.samples = at_rate(columns_of(rows, wanted, first_angle), used, t, rate_hz);
+  const auto instants = static_cast<std::size_t>(std::floor(t.back() * rate_hz)) + 1;
+  for (const Column& column : columns_of(rows, wanted, first_angle))
+    out.samples.push_back(at_rate(column, used, t, instants, rate_hz));
   out.log.time.rate_hz = rate_hz;
-  out.log.samples = static_cast<std::uint64_t>(std::floor(t.back() * rate_hz)) + 1;
+  out.log.samples = instants;
   return out;
 }
 

@@ -15,8 +15,8 @@ struct ResampledLog {
   std::vector<std::vector<double>> samples;  ///< [wanted channel][instant], NaN: missing
 };
 
-/// Linear between neighbouring rows by their stamps; missing where the stamps of both are more than
-/// four median steps apart. Rows whose stamp does not advance are left out and counted. Whole in
+/// Linear between a channel's neighbouring samples by their stamps; missing where these are more than
+/// four of the channel's median steps apart. Rows whose stamp does not advance are left out and counted. Whole in
 /// memory. Wanted channels from `first_angle` on are angles, joined the short way round. Throws
 /// Error(input) for a log without stamps.
 ResampledLog read_resampled(const std::string& path,
