@@ -139,7 +139,7 @@ void doubt(const Channel& channel, bool alone, ChannelResult& result) {
       finding("slow_channel",
               fmt::format("The channel has a value in one of {} rows: in the grid of the "
                           "table most of its samples are missing, and its rate is wrong.",
-                          channel.every),
+                          brief_text(channel.every, 3)),
               "in a table of faster rows it has no rate of its own");
   slow.severity = Severity::bad;
   if (alone) slow.help.push_back({"Read it alone.", {{"channels", channel.name}}});

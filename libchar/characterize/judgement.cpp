@@ -205,6 +205,12 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
                             "moves_throughout"})
     if (has(found.out, cause))
       std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
+  // Marks are far from all samples: they look like movement, and what moves is seen without them.
+  if (has(found.out, "missing_mark"))
+    std::erase_if(found.out, [](const Finding& one) {
+      return one.code == "motion" || one.code == "moves_throughout" || one.code == "spiky" ||
+             one.code == "strength_change";
+    });
   return worst_first(std::move(found.out));
 }
 

@@ -111,7 +111,7 @@ std::string as_part(const std::string& whole) {
 std::string settings_text(const Finding::Help& help) {
   std::string out;
   for (const Finding::Setting& one : help.options)
-    out += (out.empty() ? " (`" : " `") + one.option + "` " + one.value;
+    out += (out.empty() ? " (`" : " `") + one.option + "` " + shell_word(one.value);
   return out.empty() ? out : out + ")";
 }
 

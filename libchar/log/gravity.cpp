@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libchar/core/axis_name.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
 
@@ -16,9 +17,22 @@ namespace {
 
 constexpr double kGravity = 9.80665;  // m/s^2
 constexpr double kTolerance = 0.15;  // biases and scale errors of cheap sensors, and where on Earth
-constexpr double kAtRest = 0.05;     // g: standard deviation of all axes together
+constexpr double kAtRest =
+    0.05;  // standard deviation of all axes together, in g or of the mean's length
 
 using Triad = std::array<std::size_t, 3>;
+
+/// Columns of an array are numbered: acc_0, acc_1, acc_2.
+AxisName axis_or_number(const std::string& channel) {
+  AxisName name = axis_name(channel);
+  const std::size_t n = channel.size();
+  if (name.axis != 0 || n < 3 || channel[n - 2] != '_' || channel[n - 1] < '0' ||
+      channel[n - 1] > '2')
+    return name;
+  name.front = channel.substr(0, n - 2);
+  name.axis = static_cast<char>('x' + (channel[n - 1] - '0'));
+  return name;
+}
 
 std::vector<Triad> triads_of(std::span<const Channel> channels) {
   constexpr std::size_t kAbsent = SIZE_MAX;
@@ -26,7 +40,7 @@ std::vector<Triad> triads_of(std::span<const Channel> channels) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const auto unit = find_unit(channels[c].unit);
     if (!unit || unit->quantity != Quantity::acceleration) continue;
-    const AxisName name = axis_name(channels[c].name);
+    const AxisName name = axis_or_number(channels[c].name);
     if (name.axis == 0) continue;
     auto& triad =
         found.try_emplace({name.front, channels[c].unit}, Triad{kAbsent, kAbsent, kAbsent})
@@ -48,9 +62,24 @@ struct Suspicion {
   std::string says, factor;
 };
 
-Suspicion suspicion_of(double ratio) {
-  if (is_near(ratio, 1 / kGravity)) return {"this looks like g under the name of m/s²", "9.80665"};
-  if (is_near(ratio, kGravity)) return {"this looks like m/s² under the name of g", "1/9.80665"};
+/// `steady`: the axes scatter by little beside that length.
+Suspicion suspicion_of(double ratio, const std::string& stated, bool steady) {
+  const double stated_si = find_unit(stated)->to_si;
+  double nearest = kTolerance, times = 0;
+  std::string real;
+  for (const char* unit : {"g", "m/s^2", "mg", "cm/s^2", "mm/s^2"}) {
+    const double wanted = rounded(stated_si / find_unit(unit)->to_si, 9);
+    const double off = std::fabs(ratio / wanted - 1);
+    if (wanted == 1 || off >= nearest || (wanted < kTolerance && !steady)) continue;
+    nearest = off;
+    real = unit;
+    times = wanted;
+  }
+  if (!real.empty())
+    return {fmt::format(
+                "this looks like {} under the name of {}", shown_unit(real), shown_unit(stated)),
+            times > 1 ? "1/" + shortest(times)
+                      : shortest(rounded(find_unit(real)->to_si / stated_si, 9))};
   for (const auto& [wanted, name, factor] : {std::tuple{0.5, "half", "2"},
                                              {2.0, "twice", "1/2"},
                                              {0.25, "a quarter of", "4"},
@@ -73,8 +102,10 @@ void judge_gravity(std::span<const Channel> channels,
       scatter += std::pow(quality(c).standard_deviation * in_g, 2);
     }
     const double ratio = std::sqrt(mean);
-    if (!(std::sqrt(scatter) < kAtRest) || !std::isfinite(ratio) || is_near(ratio, 1)) continue;
-    const Suspicion suspicion = suspicion_of(ratio);
+    const bool steady = std::sqrt(scatter) < kAtRest * ratio;
+    if (!(steady || std::sqrt(scatter) < kAtRest) || !std::isfinite(ratio) || is_near(ratio, 1))
+      continue;
+    const Suspicion suspicion = suspicion_of(ratio, channels[triad[0]].unit, steady);
     Finding found = finding(
         "not_gravity",
         fmt::format("The mean acceleration of the three axes is {} {}, and a sensor at rest reads "

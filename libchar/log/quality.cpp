@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "libchar/core/numeric/lanes.hpp"
@@ -75,7 +76,7 @@ class DistinctValues {
 // its neighbour, which the tail of a coarsely rounded signal has not: then all of them are
 // saturated.
 struct Extreme {
-  double sign = 1, value = -__builtin_inf(), next = -__builtin_inf();
+  double sign = 1, value = -__builtin_inf(), next = -__builtin_inf(), third = -__builtin_inf();
   std::uint64_t run = 0, count = 0, at_next = 0;
   bool runs = false;
 
@@ -87,8 +88,15 @@ struct Extreme {
     constexpr double kApart = 3;
     return count >= kFewest && others > 0 && value - next > kApart * others;
   }
+  /// Two marks side by side; `others`: the range of what is neither.
+  bool are_marks(double others) const {
+    constexpr std::uint64_t kFewest = 3;
+    constexpr double kApart = 3;
+    return count + at_next >= 2 * kFewest && count >= kFewest && at_next >= kFewest && others > 0 &&
+           next - third > kApart * others;
+  }
   void block(const double* x, std::size_t n, double block_extreme) {
-    if (sign * block_extreme < next) {  // nothing here reaches it: nearly every block of noise
+    if (sign * block_extreme < third) {  // nothing here reaches it: nearly every block of noise
       run = 0;
       return;
     }
@@ -96,14 +104,18 @@ struct Extreme {
   }
   void step(double v) {
     if (v > value) {
+      third = next;
       next = value;
       at_next = count;
       value = v;
       run = count = 0;
       runs = false;
     } else if (v > next && v < value) {
+      third = next;
       next = v;
       at_next = 0;
+    } else if (v > third && v < next) {
+      third = v;
     }
     at_next += v == next ? 1 : 0;
     run = v == value ? run + 1 : 0;
@@ -117,10 +129,15 @@ struct Extreme {
       return v == e.value ? e.count : v == e.next ? e.at_next : 0;
     };
     value = std::max(before.value, later.value);
-    next = std::max({before.next,
-                     later.next,
-                     before.value < value ? before.value : before.next,
-                     later.value < value ? later.value : later.next});
+    const auto largest_below = [&](double limit) {
+      double found = -__builtin_inf();
+      for (const Extreme* e : {&before, &later})
+        for (const double v : {e->value, e->next, e->third})
+          if (v < limit) found = std::max(found, v);
+      return found;
+    };
+    next = largest_below(value);
+    third = largest_below(next);
     count = of(before, value) + of(later, value);
     at_next = next > -__builtin_inf() ? of(before, next) + of(later, next) : 0;
     const std::uint64_t in_front = before.value == value ? before.run : 0;
@@ -131,6 +148,7 @@ struct Extreme {
   }
   static void layout(auto& at, auto& end) {
     at(end.value, end.next);
+    at(end.third);
     at.group("an end of the range", end.run, end.count, end.at_next);
     at(end.runs);
   }
@@ -335,8 +353,11 @@ class WrapWatch {
   }
 
  private:
-  // The shortest decimal number within `off`.
+  // A turn or a power of two, else the shortest decimal number within `off`.
   static double with_digits(double value, double off) {
+    constexpr double kTurn = 2 * std::numbers::pi;
+    for (const double natural : {kTurn, kTurn / 2, 360.0, std::exp2(std::round(std::log2(value)))})
+      if (std::fabs(natural - value) <= off) return natural;
     for (int digits = 1; digits < 17; ++digits)
       if (const double short_one = rounded(value, digits); std::fabs(short_one - value) <= off)
         return short_one;
@@ -564,13 +585,49 @@ struct OddValues {
 
 }  // namespace
 
+/// Values in a row: no noise of many levels repeats so often.
+constexpr std::uint64_t kFrozenRun = 8;
+
+/// Runs of one value.
+struct RunsOfOneValue {
+  std::uint64_t now = 0, longest = 0, repeated = 0;
+  std::uint64_t frozen_runs = 0,
+                frozen = 0;  // of kFrozenRun and more, and what only repeats in them
+
+  void push(bool repeats) {
+    repeated += repeats ? 1 : 0;
+    now = repeats ? now + 1 : 1;
+    longest = std::max(longest, now);
+    frozen_runs += now == kFrozenRun ? 1 : 0;
+    frozen += now == kFrozenRun ? kFrozenRun - 1 : now > kFrozenRun ? 1 : 0;
+  }
+  /// `goes_on`: so many values of the later part repeat the last one; `all`: it has no others.
+  void join(const RunsOfOneValue& later, std::uint64_t goes_on, bool all) {
+    const auto frozen_in = [](std::uint64_t run) { return run < kFrozenRun ? 0 : run - 1; };
+    const auto frozen_run = [](std::uint64_t run) {
+      return std::uint64_t{run < kFrozenRun ? 0U : 1U};
+    };
+    const std::uint64_t across = goes_on > 0 ? now + goes_on : 0;
+    repeated += later.repeated + (goes_on > 0 ? 1 : 0);
+    longest = std::max({longest, later.longest, across});
+    frozen += later.frozen;
+    frozen_runs += later.frozen_runs;
+    if (goes_on > 0) {
+      frozen += frozen_in(across) - frozen_in(now) - frozen_in(goes_on);
+      frozen_runs += frozen_run(across) - frozen_run(now) - frozen_run(goes_on);
+    }
+    now = goes_on > 0 && all ? across : later.now;
+  }
+};
+
 struct QualityMeter::State {
   MeanAndSpread values;
   DifferenceMoments differences;
   OddValues odd;
   DistinctValues distinct;
   Extreme top{1}, bottom{-1};
-  std::uint64_t missing = 0, beyond = 0, run = 0, longest_run = 0, repeated = 0;
+  std::uint64_t missing = 0, beyond = 0;
+  RunsOfOneValue same;
   double previous = 0, minimum = __builtin_inf(), maximum = -__builtin_inf();
   bool joined = false;  // previous is the sample right before
   Beginning beginning;
@@ -613,7 +670,8 @@ void QualityMeter::State::layout(auto& at, auto& s) {
   CounterWatch::layout(at, s.odd.counter);
   Extreme::layout(at, s.top);
   Extreme::layout(at, s.bottom);
-  at.group(kWhat, s.missing, s.beyond, s.run, s.longest_run, s.repeated, s.pushed);
+  at.group(kWhat, s.missing, s.beyond, s.same.now, s.same.longest, s.same.repeated, s.pushed);
+  at.group(kWhat, s.same.frozen_runs, s.same.frozen);
   at.group(kWhat, s.previous, s.minimum, s.maximum);
   at.group(kWhat, s.joined, s.float32);
   at(b.value);
@@ -730,17 +788,13 @@ void QualityMeter::State::process(const double* x,
 // Runs of one value: differences of exactly zero in a row, plus one; a missing sample ends a run.
 void QualityMeter::State::runs(const double* x, const double* before, std::size_t n, bool repeats) {
   if (!repeats) {
-    run = 1;
-    longest_run = std::max<std::uint64_t>(longest_run, 1);
+    same.push(false);
     return;
   }
   for (std::size_t i = 0; i < n; ++i) {
     const bool start = any_start && starts[i] != 0;
-    const bool repeats_last = x[i] - before[i] == 0 && !start;
-    repeated += repeats_last ? 1 : 0;
-    run = repeats_last ? run + 1 : 1;
-    odd.resting.look(x[i], run);
-    longest_run = std::max(longest_run, run);
+    same.push(x[i] - before[i] == 0 && !start);
+    odd.resting.look(x[i], same.now);
   }
 }
 
@@ -796,21 +850,50 @@ constexpr double kMostSaturated = 0.01;
 
 /// Share of samples at one value inside the range that no rounding of a noise gives.
 constexpr double kDeadBand = 0.3;
-/// At this share of repeats a run of sixteen comes by chance once in 10^15 samples.
-constexpr double kFewRepeats = 0.1;
+
+/// Runs of one value, where values do not repeat anyway, as they do between coarse steps. What repeats outside of them
+/// gives the chance of a run among these samples; a record that holds all of its values has a rhythm.
+void judge_runs(const ChannelQuality& q, std::vector<Finding>& out) {
+  constexpr double kMuch = 0.01, kChance = 1e-3, kHeld = 0.5;
+  if (q.distinct_values <= 16) return;
+  const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
+  const double repeats =
+      (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
+  const bool held = frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
+  const bool rare =
+      q.saturated == 0 && !held && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
+  if (q.longest_stuck < (rare ? kFrozenRun : 100)) return;
+  Finding stuck = finding(
+      "stuck",
+      q.signs.frozen_runs < 2 || !rare
+          ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
+          : fmt::format("one value {} to {} times in a row in {} stretches, {} of the samples: the "
+                        "sensor or the "
+                        "link hung",
+                        kFrozenRun,
+                        q.longest_stuck,
+                        q.signs.frozen_runs,
+                        percent_text(frozen / samples)));
+  if ((rare ? frozen : static_cast<double>(q.longest_stuck)) > kMuch * samples)
+    stuck.severity = Severity::bad;
+  // Where values repeat anyway, as between coarse steps, runs of them are no sign.
+  const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
+  if (!held && samples * std::pow(repeats, run - 1) < kChance)
+    stuck.help.push_back(
+        {"Take what stands still as missing.", {{"frozen", fmt::format("{}", run)}}});
+  out.push_back(std::move(stuck));
+}
 
 void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
   if (!q.signs.marks.empty()) {  // what else is odd about the ends is these
     std::vector<std::string> texts;
     for (const double mark : q.signs.marks) texts.push_back(shortest(mark));
-    const std::uint64_t count = (q.signs.marks.front() == q.minimum ? q.at_minimum : 0) +
-                                (q.signs.marks.back() == q.maximum ? q.at_maximum : 0);
     Finding marked = finding(
         "missing_mark",
         fmt::format("{} stands {} times, far from all other values: a mark for missing values?",
                     fmt::join(texts, " or "),
-                    count));
-    marked.count = count;
+                    q.signs.marked));
+    marked.count = q.signs.marked;
     marked.help.push_back(
         {"Say that it means missing.", {{"missing", fmt::format("{}", fmt::join(texts, ","))}}});
     out.push_back(std::move(marked));
@@ -826,6 +909,8 @@ void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
                                       brief_text(q.minimum, 6),
                                       brief_text(q.maximum, 6)));
     cut.count = q.saturated;
+    if (q.minimum == 0 || q.maximum == 0)
+      cut.help.push_back({"Where 0 stands for no reading, say so.", {{"missing", "0"}}});
     out.push_back(std::move(cut));
   }
   // One long run is a sensor that froze; a dead band is entered again and again.
@@ -843,18 +928,7 @@ void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
     out.push_back(std::move(dead));
     return;
   }
-  if (q.longest_stuck < 100 || q.distinct_values <= 16) return;
-  Finding stuck = finding(
-      "stuck",
-      fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck));
-  constexpr double kMuch = 0.01;
-  if (static_cast<double>(q.longest_stuck) > kMuch * static_cast<double>(q.samples))
-    stuck.severity = Severity::bad;
-  // Where values repeat anyway, as between coarse steps, runs of them are no sign.
-  if (static_cast<double>(q.repeats - std::min(q.repeats, q.longest_stuck)) <
-      kFewRepeats * static_cast<double>(q.samples))
-    stuck.help.push_back({"Take what stands still as missing.", {{"frozen", "16"}}});
-  out.push_back(std::move(stuck));
+  judge_runs(q, out);
 }
 
 std::vector<Finding> findings_of(const ChannelQuality& q) {
@@ -891,7 +965,7 @@ bool QualityMeter::State::may_saturate(std::size_t levels) const {
   if (levels <= kFewLevels || !odd.counter.sentence().empty()) return false;
   const double ends = static_cast<double>(top.count + bottom.count);
   const double others = values.n - ends;
-  const double repeats = static_cast<double>(repeated) - ends;
+  const double repeats = static_cast<double>(same.repeated) - ends;
   return repeats < 0.5 * others;
 }
 
@@ -930,11 +1004,8 @@ void QualityMeter::State::join_runs(const State& later, bool direct) {
   const bool all = is(later.values.n, other.equal);
   top.join(later.top, later.top.value == other.value ? other.equal : 0, all);
   bottom.join(later.bottom, -later.bottom.value == other.value ? other.equal : 0, all);
-  const bool same = direct && other.value == previous;
-  const std::uint64_t across = same ? run + other.run : 0;
-  repeated += later.repeated + (same ? 1 : 0);
-  longest_run = std::max({longest_run, later.longest_run, across});
-  run = same && other.run == later.pushed ? across : later.run;
+  const bool goes_on = direct && other.value == previous;
+  same.join(later.same, goes_on ? other.run : 0, other.run == later.pushed);
   if (values.n == 0) {
     beginning = other;
     beginning.at_once = other.at_once && pushed == 0;
@@ -944,7 +1015,7 @@ void QualityMeter::State::join_runs(const State& later, bool direct) {
     beginning.over = true;
     return;
   }
-  if (same && beginning.run == pushed) beginning.run += other.run;
+  if (goes_on && beginning.run == pushed) beginning.run += other.run;
   beginning.run_over = beginning.run_over || other.run_over || !direct;
   beginning.equal += other.equal;
   beginning.over = other.over;
@@ -997,19 +1068,31 @@ ChannelQuality QualityMeter::finish() const {
       q.standard_deviation = std::numeric_limits<double>::quiet_NaN();
   }
   q.distinct_values = state.distinct.values().size();
-  q.longest_stuck = state.longest_run;
+  q.longest_stuck = state.same.longest;
   const double others = state.top.next + state.bottom.next;
   if (q.distinct_values > 3) {
     if (state.bottom.is_mark(state.top.value + state.bottom.next) || state.bottom.is_mark(others))
       q.signs.marks.push_back(q.minimum);
+    else if (state.bottom.are_marks(state.top.value + state.bottom.third))
+      q.signs.marks = {q.minimum, -state.bottom.next};
     if (state.top.is_mark(state.top.next + state.bottom.value) || state.top.is_mark(others))
       q.signs.marks.push_back(q.maximum);
+    else if (state.top.are_marks(state.top.third + state.bottom.value))
+      q.signs.marks.insert(q.signs.marks.end(), {state.top.next, q.maximum});
   }
+  q.signs.marked = 0;
+  for (const double mark : q.signs.marks)
+    q.signs.marked += mark == q.minimum            ? state.bottom.count
+                      : mark == -state.bottom.next ? state.bottom.at_next
+                      : mark == q.maximum          ? state.top.count
+                                                   : state.top.at_next;
+  q.signs.frozen = state.same.frozen;
+  q.signs.frozen_runs = state.same.frozen_runs;
   q.signs.resting_value = state.odd.resting.value;
   q.signs.at_rest = state.odd.resting.count;
   q.at_minimum = state.bottom.count;
   q.at_maximum = state.top.count;
-  q.repeats = state.repeated;
+  q.repeats = state.same.repeated;
   if (state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values))
     q.saturated = state.top.saturated() + state.bottom.saturated();
   q.difference_kurtosis = state.differences.kurtosis();

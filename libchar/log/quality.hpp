@@ -24,6 +24,9 @@ struct ChannelQuality {
     std::vector<double> marks;  ///< extremes that look like marks for missing values
     double resting_value = 0;   ///< the first that was repeated eight times
     std::uint64_t at_rest = 0;  ///< samples at it from there on; 0: no value did
+    /// runs of one value of eight and more, and the samples in them that only repeat
+    std::uint64_t frozen_runs = 0, frozen = 0;
+    std::uint64_t marked = 0;  ///< samples at `marks`
   };
   std::uint64_t samples = 0;  ///< not missing
   std::uint64_t missing = 0;

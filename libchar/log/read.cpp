@@ -26,6 +26,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
+#include "libchar/log/csv/head/other_content.hpp"
 #include "libchar/log/csv/unpacker.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/detail/unused_options.hpp"
@@ -92,6 +93,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
   if (const Format* format = format_by_suffix(path)) return *format;
   for (const Format& format : formats())
     if (format.sniff != nullptr && format.sniff(path, front)) return format;
+  csv::refuse_other_format(front, path);
   const auto words = format_words();
   throw input_error("E0102", path)
       .says("neither text nor an array file, and no sidecar describes it")
@@ -246,31 +248,11 @@ void warn_of_units(const ReadOptions& options, Findings& warnings) {
       .hint("`channels` chooses others");
 }
 
-/// How the values of a channel stand among the first samples: one that is slower than the rows of its table
-/// has one in every so many.
-struct Presence {
-  std::uint64_t looked = 0, values = 0, last = 0, usual = 0, same = 0;
-
-  void add(const double* x, std::size_t n) {
-    constexpr std::uint64_t kLook = 65536;
-    for (std::size_t i = 0; i < n && looked < kLook; ++i, ++looked) {
-      if (std::isnan(x[i])) continue;
-      const std::uint64_t distance = looked - last;
-      if (values == 1) usual = distance;
-      same += values > 0 && distance + 1 >= usual && distance <= usual + 1;
-      last = looked;
-      if (++values == kLook / 1024 && usual == 1) looked = kLook;  // as fast as its rows
-    }
-  }
-  bool slow() const { return values > 4 && usual > 1 && 10 * same >= 9 * (values - 1); }
-};
-
 // Passes blocks on and remembers which channels had a value at all.
 struct Watch final : BlockSink {
   Watch(BlockSink& sink, const ReadOptions& reading) : next(sink), options(reading) {}
   void begin(const LogInfo& so_far) override {
     seen.assign(so_far.channels.size(), false);
-    presence.resize(so_far.channels.size());
     LogInfo named = so_far;
     factors = dress_channels(named.channels, options, nullptr);
     scales = std::any_of(factors.begin(), factors.end(), [](double f) { return f != 1; });
@@ -279,7 +261,6 @@ struct Watch final : BlockSink {
   }
   void block(const SampleBlock& samples) override {
     for (std::size_t c = 0; c < seen.size(); ++c) {
-      presence[c].add(samples.channels[c], samples.rows);
       for (std::size_t i = 0; i < samples.rows && !seen[c]; ++i)
         seen[c] = !std::isnan(samples.channels[c][i]);
     }
@@ -302,7 +283,6 @@ struct Watch final : BlockSink {
   BlockSink& next;
   const ReadOptions& options;
   std::vector<bool> seen;
-  std::vector<Presence> presence;
   std::vector<double> factors;  // of the channels
   bool scales = false;          // one of them is not 1
   std::vector<std::vector<double>> scaled;
@@ -389,31 +369,39 @@ void judge_values(const Watch& watch,
                    "channels without any finite value",
                    "channel " + info.channels[c].name);
   for (std::size_t c = 0; c < watch.seen.size(); ++c) {
-    if (!watch.presence[c].slow()) continue;
-    info.channels[c].every = watch.presence[c].usual;
-    Finding& slow = warnings.add(
-        "slow_channel",
-        "channels slower than the rows of their table: most of their samples are missing here",
-        fmt::format("channel {}, every {} rows", info.channels[c].name, watch.presence[c].usual));
+    if (!(info.channels[c].every > 1)) continue;
+    Finding& slow = warnings.add("slow_channel",
+                                 "channels with a clock of their own among the rows of others: in "
+                                 "the grid of the table samples are missing",
+                                 fmt::format("channel {}, every {} rows",
+                                             info.channels[c].name,
+                                             brief_text(info.channels[c].every, 3)));
     if (slow.help.empty())
       slow.help.push_back(
           {"Read it alone: it has a grid of its own.", {{"channels", info.channels[c].name}}});
   }
 }
 
-/// The next rows, with what is marked as missing missing.
+/// The next rows, with what is marked as missing missing: by the number in the file, or by what it is in the
+/// channel's unit, as messages print it.
 bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, Findings& warnings) {
   if (!source.next(block, warnings)) return false;
+  if (options.missing.marks.empty()) return true;
+  std::vector<Channel> channels = source.info().channels;
+  const std::vector<double> factors = dress_channels(channels, options, nullptr);
   for (const double mark : options.missing.marks)
     for (std::size_t c = 0; c < block.columns.size(); ++c) {
-      const auto end = block.columns[c].begin() + static_cast<std::ptrdiff_t>(block.rows);
-      const auto count = std::count(block.columns[c].begin(), end, mark);
+      std::uint64_t count = 0;
+      for (double& value : block.columns[c]) {
+        if (value != mark && value * factors[c] != mark) continue;
+        value = kMissing;
+        ++count;
+      }
       if (count == 0) continue;
-      std::replace(block.columns[c].begin(), end, mark, kMissing);
       warnings.add("missing_value",
                    "values that mean \"no reading\", as was said: missing",
-                   source.info().channels[c].name,
-                   static_cast<std::uint64_t>(count));
+                   channels[c].name,
+                   count);
     }
   return true;
 }
@@ -504,6 +492,8 @@ LogInfo read_log(const std::string& log,
   LogInfo info = named_info(*source, options);
   warn_of_unused(info.channels, options, warnings);
   take_grid(known, info);
+  for (std::size_t c = 0; c < info.channels.size(); ++c)
+    info.channels[c].every = grid.clocks().every(c);
   refuse_without_samples(info, options);
   judge_values(watch, info, options, warnings);
   warn_of_units(options, warnings);

@@ -21,8 +21,8 @@ struct Channel {
       name;  ///< never empty; "c0", "c1"… when the log has no names (c0 is the first non-time column)
   std::string unit;      ///< as written in the log, "" when it says nothing
   bool integer = false;  ///< every value is an integer written as one (counts)
-  std::uint64_t every =
-      1;  ///< grid points from one of its values to the next, where it is slower than the rows of its table
+  double every =
+      1;  ///< rows for one of its values, where it has a clock of its own in a table of others
   double rate_hz = 0;  ///< of its own, where it was read on a grid of its own; 0: that of the log
   std::string stated = {};  ///< unit that the log says
   double factor = 1;        ///< that the numbers of the log were multiplied with

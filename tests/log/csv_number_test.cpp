@@ -167,7 +167,8 @@ TEST_CASE("a cell is one finite number, missing, infinite or wrong") {
   CHECK(read_cell("1_000", '.').offset == 1);
   CHECK(read_cell("--1", '.').offset == 0);
   CHECK(kind("+") == Cell::bad);
-  CHECK(kind("-") == Cell::bad);
+  CHECK(kind("-") == Cell::missing);
+  CHECK(kind("--") == Cell::missing);
 }
 
 TEST_CASE("a cell that is no number is told with reason and place") {
@@ -180,7 +181,6 @@ TEST_CASE("a cell that is no number is told with reason and place") {
                              Wrong{"-+1", 0, "two signs"},
                              Wrong{"1e", 0, "cut off in its exponent"},
                              Wrong{"1e-", 0, "cut off in its exponent"},
-                             Wrong{"-", 0, "without digits"},
                              Wrong{".", 0, "without digits"},
                              Wrong{"1_0", 1, "underscore"},
                              Wrong{"1,000.5", 1, "thousands separator"},
@@ -262,7 +262,7 @@ TEST_CASE("time stamps become whole nanoseconds exactly") {
   CHECK(read_stamp("nan", '.', 1, ns, offset) == StampDefect::missing);
   CHECK(read_stamp("12:30", '.', 1, ns, offset) == StampDefect::malformed);
   CHECK(read_stamp("1e", '.', 1, ns, offset) == StampDefect::malformed);
-  CHECK(read_stamp("-", '.', 1, ns, offset) == StampDefect::malformed);
+  CHECK(read_stamp("-", '.', 1, ns, offset) == StampDefect::missing);
   // Found by fuzzing: two signs in an exponent, and text behind an exponent that nothing can have.
   for (const char* text : {"1e+-5", "1e++5", "0e99999x", "1e99999x", "0e-99999 "}) {
     INFO(text);

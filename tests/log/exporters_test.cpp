@@ -152,7 +152,7 @@ std::vector<Export> robot_exports() {
        250,
        112574307000,
        {0.01, 0, 4000, 0, -0.2, 0.31},
-       "time unit: us"});
+       "taken as us"});
   out.push_back({"ArduPilot mavlogdump --format csv --types IMU",
                  "timestamp,TimeUS,I,GyrX,GyrY,AccZ,T\n" +
                      lines(12,
@@ -358,7 +358,7 @@ std::vector<Export> imu_exports() {
                  1e6 / 16667,
                  1013245000,
                  {0, 0.1, 0, 9},
-                 "time unit: us"});
+                 "taken as us"});
   out.push_back({"stamps that no unit brings to the stated rate",
                  "# Sample Rate: 75 Hz\ntimestamp,x\n" +
                      lines(24, [](int k) { return fmt::format("{},{}\n", 20 * k, k); }),

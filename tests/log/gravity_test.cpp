@@ -50,9 +50,14 @@ TEST_CASE("gravity: g under the name of m/s², half the scale, and the other way
   CHECK(scale(triad(9.79, "g", 0.01)) == "acc_x=1/9.80665");
   CHECK(scale(triad(0.5, "g", 0.001)) == "acc_x=2");
   CHECK(scale(triad(0.7, "g", 0.001)).empty());
+  CHECK(scale(triad(981, "m/s^2", 2)) == "acc_x=1/100");
+  CHECK(scale(triad(1000, "g", 2)) == "acc_x=1/1000");
+  CHECK(scale(triad(1.0, "mg", 0.002)) == "acc_x=1000");
+  CHECK(scale(triad(16384, "m/s^2", 30)).empty());  // counts
 }
 
 TEST_CASE("gravity: what was taken out is a caution, what moves is not judged") {
+  CHECK(scale(triad(0.01, "m/s^2", 0.02)).empty());  // an offset as large as a mg, and its noise
   const Scene removed = triad(0, "m/s^2", 0.01);
   REQUIRE(removed.quality[1].findings.size() == 1);
   CHECK(removed.quality[1].findings[0].severity == Severity::caution);
@@ -66,4 +71,14 @@ TEST_CASE("gravity: one axis, other quantities and names without axes are not ju
   judge_gravity(one.channels, [&](std::size_t c) -> ChannelQuality& { return one.quality[c]; });
   CHECK(one.quality[0].findings.empty());
   CHECK(scale(triad(1, "rad/s", 0.001)) == "none");
+}
+
+TEST_CASE("gravity: the columns of an array are axes") {
+  Scene array = triad(1, "m/s^2", 0.001);
+  for (std::size_t c = 0; c < 3; ++c) {
+    array.quality[c].findings.clear();
+    array.channels[c].name = "acc_" + std::string(1, static_cast<char>('0' + c));
+  }
+  judge_gravity(array.channels, [&](std::size_t c) -> ChannelQuality& { return array.quality[c]; });
+  CHECK(array.quality[0].findings.size() == 1);
 }

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "libchar/log/time/stamp_sketch.hpp"
@@ -429,6 +430,49 @@ TEST_CASE("stamps in packets: the rate is rows over time") {
         Approx(5000).epsilon(1e-3));
 }
 
+TEST_CASE(
+    "packets of one stamp each: rate and what is missing, however they are rounded and late") {
+  std::mt19937 random(5);
+  std::gamma_distribution<double> late(2, 0.02);
+  for (const std::size_t rows : {5, 10, 32})
+    for (const double rounded_us : {1.0, 1000.0})
+      for (const bool lost : {false, true}) {
+        const double dt = 1e6 / 104;
+        std::vector<std::int64_t> stamps;
+        std::size_t missing = 0;
+        for (std::size_t packet = 1; packet < 20000 / rows; ++packet) {
+          const double at = static_cast<double>(packet * rows) * dt +
+                            late(random) * static_cast<double>(rows) * dt;
+          const bool gone = lost && packet > 100 / rows && packet % 41 == 0;
+          missing += gone ? rows : 0;
+          if (!gone)
+            stamps.insert(stamps.end(),
+                          rows,
+                          static_cast<std::int64_t>(std::round(at / rounded_us) * rounded_us));
+        }
+        const Recording r = read_text(log_of(stamps));
+        INFO(rows << " rows, rounded to " << rounded_us << " us, " << missing << " missing");
+        CHECK(r.info.time.rate_hz == Approx(104).epsilon(1e-3));
+        CHECK(r.info.time.missing_samples == missing);
+        CHECK(count(r, "duplicate_timestamp") == 0);
+      }
+}
+
+TEST_CASE("stamps that a logger holds back keep their rows, doubled rows do not") {
+  std::mt19937 random(7);
+  std::normal_distribution<double> scatter(0, 3000);
+  std::vector<std::int64_t> stamps;
+  std::int64_t last = 0;
+  for (int i = 0; i < 20000; ++i) {
+    last = std::max(last, static_cast<std::int64_t>(10000.0 * i + scatter(random)));
+    stamps.push_back(last);
+  }
+  const Recording held = read_text(log_of(stamps));
+  CHECK(held.info.time.rate_hz == Approx(100).epsilon(1e-3));
+  CHECK(held.info.samples == Approx(20000).margin(20));
+  CHECK(count(held, "held_stamp") > 50);
+}
+
 TEST_CASE("coarse stamps: the rate is rows over time") {
   struct Clock {
     double rate_hz, tick_ms;
@@ -519,4 +563,59 @@ TEST_CASE("of a slow channel among fast ones the rows with a value count") {
   const Recording both = read_text(text);
   CHECK(both.info.time.rate_hz == Approx(200));
   CHECK(count(both, "slow_channel") == 1);
+}
+
+TEST_CASE(
+    "a channel among others has a clock of its own by its steps, not by its first two values") {
+  std::mt19937 random(3);
+  const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  struct Kind {
+    const char* what;
+    bool own;
+    std::function<bool(int)> there;
+  };
+  int next = 0;
+  const std::vector<Kind> kinds = {
+      {"one blank in the second row", false, [](int i) { return i != 1; }},
+      {"half missing at random", false, [&](int) { return share() < 0.5; }},
+      {"nine of ten missing at random", false, [&](int) { return share() < 0.1; }},
+      {"two of three", false, [](int i) { return i % 3 != 2; }},
+      {"the second value lost", true, [](int i) { return i % 100 == 0 && i != 100; }},
+      {"a sixth of the values lost", true, [&](int i) { return i % 20 == 0 && share() > 0.17; }},
+      {"30 Hz in rows of 100",
+       true,
+       [](int i) { return i % 10 == 0 || i % 10 == 3 || i % 10 == 7; }},
+      {"late by up to a fifth",
+       true,
+       [&](int i) {
+         if (i < next) return false;
+         next = i + 80 + static_cast<int>(40 * share());
+         return true;
+       }},
+  };
+  for (const Kind& kind : kinds) {
+    std::string text = "t[s],fast,slow\n";
+    for (int i = 0; i < 12000; ++i)
+      text += fmt::format(
+          "{:.2f},{},{}\n", 0.01 * i, i % 7, kind.there(i) ? fmt::to_string(i % 11) : "");
+    INFO(kind.what);
+    CHECK(count(read_text(text), "slow_channel") == (kind.own ? 1U : 0U));
+    ReadOptions alone;
+    alone.channels = {"slow"};
+    CHECK((count(read_text(text, alone), "own_rows") > 0) == kind.own);
+  }
+}
+
+TEST_CASE("of the fast channel of an outer join the rows of the others are no missing samples") {
+  std::string text = "t[s],fast,slow\n";
+  for (int i = 0; i < 4000; ++i) {
+    text += fmt::format("{:.4f},{},\n", 0.01 * i, i % 7);
+    if (i % 12 == 0) text += fmt::format("{:.4f},,{}\n", 0.01 * i + 0.0031, i % 11);
+  }
+  CHECK(count(read_text(text), "slow_channel") == 2);
+  ReadOptions alone;
+  alone.channels = {"fast"};
+  const Recording fast = read_text(text, alone);
+  CHECK(fast.info.time.rate_hz == Approx(100));
+  CHECK(fast.info.samples == 4000);
 }

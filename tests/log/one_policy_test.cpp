@@ -197,7 +197,12 @@ const std::vector<Dirt> kDirt = {
      "E0316",
      "",
      0},
-    {"a doubled stamp", [](DirtyRows& r) { r[5][0] = r[4][0]; }, "", "duplicate_timestamp", 1},
+    {"a stamp held back", [](DirtyRows& r) { r[5][0] = r[4][0]; }, "", "held_stamp", 1},
+    {"a doubled row",
+     [](DirtyRows& r) { r.insert(r.begin() + 5, r[4]); },
+     "",
+     "duplicate_timestamp",
+     1},
     {"a step back", [](DirtyRows& r) { r[5][0] = r[2][0]; }, "", "backward_timestamp", 1},
     {"a gap",
      [](DirtyRows& r) {

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <span>
 #include <vector>
@@ -110,6 +111,50 @@ TEST_CASE("a counter is said to be one from 63 steps on, and not behind a block 
   const auto ramp = rising(20000);
   noisy.insert(noisy.end(), ramp.begin(), ramp.end());
   CHECK_FALSE(suggests(meter(noisy), "counter"));
+}
+
+TEST_CASE("short runs of one value are frozen stretches where values do not repeat otherwise") {
+  std::vector<double> x = gaussian(50000, 1);
+  for (double& v : x) v = std::round(v * 1000) / 1000;
+  CHECK_FALSE(has(meter(x).findings, "stuck"));
+  std::vector<double> frozen = x;
+  for (std::size_t i = 500; i < frozen.size(); i += 500)
+    std::fill_n(frozen.begin() + static_cast<std::ptrdiff_t>(i), 20, frozen[i]);
+  const ChannelQuality q = meter(frozen);
+  CHECK(q.signs.frozen_runs == 99);
+  CHECK(q.signs.frozen >= 99 * 19);
+  REQUIRE(has(q.findings, "stuck"));
+  CHECK(worst_of(q.findings) == Severity::bad);
+  QualityMeter first, second;  // joined inside a run
+  first.push(std::span(frozen).first(1007));
+  second.push(std::span(frozen).subspan(1007));
+  first.join(second);
+  CHECK(first.finish().signs.frozen == q.signs.frozen);
+  CHECK(first.finish().signs.frozen_runs == q.signs.frozen_runs);
+  std::vector<double> coarse = gaussian(50000, 1);
+  double slow = 0;
+  for (double& v : coarse)
+    v = std::round(slow += 0.05 * v);  // a slow quantity between the steps of its converter
+  CHECK_FALSE(has(meter(coarse).findings, "stuck"));
+}
+
+TEST_CASE("two marks side by side are marks, and no jumps of a phase") {
+  std::vector<double> x = gaussian(20000, 1);
+  for (std::size_t i = 100; i < x.size(); i += 250) x[i] = i % 500 == 100 ? -99 : -98;
+  const ChannelQuality q = meter(x);
+  REQUIRE(has(q.findings, "missing_mark"));
+  CHECK(q.signs.marks == std::vector<double>{-99, -98});
+  CHECK(q.signs.marked == 80);
+  CHECK(q.signs.wraps == 0);
+}
+
+TEST_CASE("the period of a phase that wraps is a turn or a power of two where it can be") {
+  for (const double period : {2 * std::numbers::pi, 4096.0}) {
+    std::vector<double> phase = gaussian(20000, 0.002 * period);
+    for (std::size_t i = 0; i < phase.size(); ++i)
+      phase[i] = std::fmod(0.013 * period * static_cast<double>(i) + phase[i] + period, period);
+    CHECK(meter(phase).signs.period == period);
+  }
 }
 
 TEST_CASE("saturation, stuck runs, spikes, coarse quantization") {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "help/next.hpp"
 #include "libchar/core/text/quantity_text.hpp"
@@ -29,13 +30,15 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
   const libchar::LogInfo& info = inspection.info;
   std::vector<libchar::Finding> found;
   libchar::ReadOptions reading = verb.reading;
+  std::string mark;
   for (const libchar::ChannelQuality& quality : inspection.quality)
     for (const libchar::Finding& one : quality.findings) {
       found.push_back(one);
       for (const libchar::Finding::Help& help : one.help)
         for (const libchar::Finding::Setting& setting : help.options)
           if (setting.option == "missing")
-            reading.missing.marks.push_back(libchar::parse_number(setting.value));
+            for (std::istringstream marks(setting.value); std::getline(marks, mark, ',');)
+              reading.missing.marks.push_back(libchar::parse_number(mark));
     }
   std::sort(reading.missing.marks.begin(), reading.missing.marks.end());
   reading.missing.marks.erase(

@@ -64,13 +64,13 @@ bool TimeGrid::push(RowBlock& block) {
   item.rows_before = counts_.rows;
   counts_.rows += block.rows;
   std::swap(item.block, block);
-  if (stamped_ && !own_rows_.decided()) own_rows_.decide(item.block);
+  if (stamped_ && !clocks_.rows.decided()) clocks_.rows.decide(item.block);
   if (!spare_.empty()) {
     block = std::move(spare_.back());
     spare_.pop_back();
   }
   pending_.push_back(std::move(item));
-  if (own_rows_.apart())
+  if (clocks_.rows.apart())
     for (Pending& waiting : pending_) leave_out_blank(waiting);
   waiting_ = 0;
   for (const Pending& waiting : pending_) waiting_ += waiting.block.rows - waiting.done;
@@ -94,6 +94,7 @@ void TimeGrid::begin() {
 void TimeGrid::process(bool end) {
   if (!stamped_) {
     while (!pending_.empty() && !window_.over) {
+      clocks_.channels.look(pending_.front().block, 0, pending_.front().block.rows);
       without_stamps(pending_.front());
       spare_.push_back(std::move(pending_.front().block));
       pending_.pop_front();
@@ -101,13 +102,15 @@ void TimeGrid::process(bool end) {
     waiting_ = 0;
     return;
   }
-  const std::size_t ahead = end ? 0 : kRowsAhead;
+  const std::size_t ahead =
+      end ? 0 : std::max(kRowsAhead, std::min<std::size_t>(2 * step_.model.packet + 2, 256));
   while ((learned_ || ready(end)) && waiting_ > ahead && !window_.over) {
     if (!learned_) learn();
     Pending& front = pending_.front();
     const std::size_t count =
         std::min<std::size_t>(front.block.rows - front.done, waiting_ - ahead);
     const std::size_t taken = process_rows(front, count);
+    clocks_.channels.look(front.block, front.done, front.done + taken);
     front.done += taken;
     waiting_ -= taken;
     if (front.done == front.block.rows) {
@@ -149,7 +152,7 @@ bool TimeGrid::take_regular(const std::int64_t* time, std::size_t n) {
   if (!window_.begun) return false;
   if (backward_.in_a_row > 0) backward_ = {};
   sketch_.add_run(last_.index + 1, time, n);
-  recent_.push(time, n);
+  recent_.rows.push(time, n);
   last_.index += static_cast<std::int64_t>(n);
   last_.row += static_cast<std::int64_t>(n);
   last_.as_read = last_.stamp = time[n - 1];
@@ -193,7 +196,8 @@ std::size_t TimeGrid::take_one_by_one(
     last_.stamp = stamp;
     last_.any = true;
     sketch_.add(last_.index, stamp);
-    recent_.push(stamp);
+    recent_.rows.push(stamp);
+    if (step_.model.packet > 0 && step > step_.longest) recent_.packets.push(last_.index, stamp);
     if (place_in_window(stamp)) continue;
     if (!window_.over) {
       run = i + 1;

@@ -27,6 +27,10 @@ namespace libchar {
 // Rows without a value of any channel that is read, in a table of slow and fast channels (a temperature
 // once a second in rows of 200 Hz): the slow channel has rows, and a clock, of its own.
 
+/// Steps between values, and those of them over blank rows: values missing at random leave steps of one, two,
+/// three intervals, and two over a blank; a clock has one step, over blanks as well.
+bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks);
+
 class OwnRows {
  public:
   /// Takes the next rows while nothing is decided; true once it is: by the first rows, or at the end of the log.
@@ -38,9 +42,29 @@ class OwnRows {
 
  private:
   void judge();
-  std::vector<std::int64_t> kept_;  // stamps of rows with a value
-  std::size_t rows_ = 0, behind_blank_ = 0;
+  std::vector<double> steps_, over_blanks_;  // of rows with a value
+  std::int64_t last_ = 0;
+  std::size_t rows_ = 0, kept_ = 0;
   bool last_blank_ = false, decided_ = false, apart_ = false;
+};
+
+/// The same of each channel among the first rows of a table.
+class ChannelClocks {
+ public:
+  /// Rows [from, to); without stamps the rows themselves count.
+  void look(const RowBlock& rows, std::size_t from, std::size_t to);
+  /// Rows for each value of a channel with a clock of its own, 1 of the others.
+  double every(std::size_t channel) const;
+
+ private:
+  struct Values {
+    std::vector<double> steps, over_blanks;
+    std::int64_t last = 0;
+    std::size_t rows = 0, count = 0;
+    bool blank = false;
+  };
+  std::vector<Values> channels_;
+  std::size_t rows_ = 0;
 };
 
 /// Takes the rows without a value out of the block, and says how many there were.
@@ -83,6 +107,7 @@ class TimeGrid {
   bool push(RowBlock& block);
   /// The rest, and what is now known of the time base.
   void finish(LogInfo& info);
+  const ChannelClocks& clocks() const { return clocks_.channels; }
 
  private:
   struct Pending {
@@ -128,6 +153,15 @@ class TimeGrid {
                    std::size_t row,
                    std::int64_t stamp,
                    std::size_t ahead) const;
+  std::vector<double> lags_ahead(const Pending& front,
+                                 std::size_t row,
+                                 std::int64_t stamp,
+                                 std::size_t ahead) const;
+  std::int64_t packet_lag(const Pending& front,
+                          std::size_t row,
+                          std::int64_t stamp,
+                          std::size_t ahead) const;
+  bool rows_go_on(const Pending& front, std::size_t row, std::size_t ahead) const;
   /// A gap of so many steps, of which so many samples lie in the window.
   void leave_missing(std::uint64_t samples, std::int64_t steps);
   std::string place(const Pending& front, std::size_t row) const;
@@ -184,8 +218,14 @@ class TimeGrid {
   RateWatch watch_;
   BackwardRows backward_;
   std::optional<std::int64_t> start_ns_;
-  OwnRows own_rows_;
-  RecentStamps recent_;
+  struct Clocks {
+    OwnRows rows;
+    ChannelClocks channels;
+  } clocks_;
+  struct Recent {
+    RecentStamps rows;
+    PacketStarts packets;
+  } recent_;
   StampSketch sketch_;
 };
 

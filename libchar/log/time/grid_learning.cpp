@@ -33,15 +33,15 @@ void TimeGrid::leave_out_blank(Pending& item) {
 
 /// Enough rows are there to learn from.
 bool TimeGrid::ready(bool end) {
-  if (end && !own_rows_.decided()) {
-    own_rows_.decide_at_end();
+  if (end && !clocks_.rows.decided()) {
+    clocks_.rows.decide_at_end();
     waiting_ = 0;
     for (Pending& waiting : pending_) {
-      if (own_rows_.apart()) leave_out_blank(waiting);
+      if (clocks_.rows.apart()) leave_out_blank(waiting);
       waiting_ += waiting.block.rows - waiting.done;
     }
   }
-  return own_rows_.decided() && waiting_ > 0 && (end || waiting_ >= kLearn);
+  return clocks_.rows.decided() && waiting_ > 0 && (end || waiting_ >= kLearn);
 }
 
 /// Of the rows that wait, as far as the window goes.
@@ -119,7 +119,7 @@ void TimeGrid::learn() {
   if (!last_.any || other) step_ = Step(found);
   if (other || watch_.longest().rows > 0 || sketch_.rate_change()) {  // of another rate
     sketch_ = {};
-    recent_.clear();
+    recent_.rows.clear();
     watch_ = {};
   }
   if (step_.ns == 0 && stamps.size() > 1) refuse_without_axis(stamps);

@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t kRows = 1025, kMostRows = std::size_t{1} << 18U;  // looked at
 constexpr std::size_t kKept = 4;                                        // at least
+constexpr std::size_t kLearnt = 12;                                     // where there are as many
+constexpr double kLeastBlank = 20;                                      // one row in so many
 
 bool blank(const RowBlock& rows, std::size_t row) {
   return std::all_of(rows.columns.begin(), rows.columns.end(), [&](const auto& column) {
@@ -19,16 +21,35 @@ bool blank(const RowBlock& rows, std::size_t row) {
 
 }  // namespace
 
+bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks) {
+  constexpr std::size_t kFew = 10;  // of so few steps all have to be alike
+  if (over_blanks.empty()) return false;
+  const double usual = median_in_place(steps, Middle::lower);
+  const auto share = [&](const auto& holds) {
+    return static_cast<double>(std::count_if(steps.begin(), steps.end(), holds)) /
+           static_cast<double>(steps.size());
+  };
+  if (!(usual > 0) || median_in_place(over_blanks, Middle::lower) > 1.5 * usual) return false;
+  if (steps.size() < kFew)
+    return share([&](double step) { return std::fabs(step - usual) <= 0.25 * usual; }) == 1;
+  return share([&](double step) { return step <= 0.55 * usual; }) <= 0.1;
+}
+
 bool OwnRows::decide(const RowBlock& rows) {
   for (std::size_t i = 0; i < rows.rows && !decided_; ++i) {
     const bool is_blank = blank(rows, i);
     if (!is_blank) {
-      behind_blank_ += last_blank_ && !kept_.empty();
-      kept_.push_back(rows.time_ns[i]);
+      if (kept_ > 0) {
+        const double step = step_between(last_, rows.time_ns[i]);
+        steps_.push_back(step);
+        if (last_blank_) over_blanks_.push_back(step);
+      }
+      last_ = rows.time_ns[i];
+      ++kept_;
     }
     last_blank_ = is_blank;
     ++rows_;
-    if ((rows_ >= kRows && kept_.size() >= kKept) || rows_ >= kMostRows) judge();
+    if ((rows_ >= kRows && kept_ >= kLearnt) || rows_ >= kMostRows) judge();
   }
   return decided_;
 }
@@ -37,21 +58,44 @@ void OwnRows::decide_at_end() {
   if (!decided_) judge();
 }
 
-// Values missing at random leave steps of one, two, three intervals; a clock has one step.
 void OwnRows::judge() {
   decided_ = true;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < kept_.size(); ++i)
-    steps.push_back(step_between(kept_[i - 1], kept_[i]));
-  if (kept_.size() < kKept || 20 * (rows_ - kept_.size()) < rows_ ||
-      10 * behind_blank_ < 3 * kept_.size())
-    return;
-  const double usual = median_in_place(steps, Middle::lower);
-  const auto near =
-      static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), [&](double step) {
-        return std::fabs(step - usual) <= 0.25 * usual;
-      }));
-  apart_ = usual > 0 && 10 * near >= 9 * steps.size();
+  apart_ = kept_ >= kKept &&
+           kLeastBlank * static_cast<double>(rows_ - kept_) >= static_cast<double>(rows_) &&
+           keeps_own_clock(std::move(steps_), std::move(over_blanks_));
+}
+
+void ChannelClocks::look(const RowBlock& rows, std::size_t from, std::size_t to) {
+  constexpr std::size_t kLook = 65536, kSteps = 1024;
+  channels_.resize(rows.columns.size());
+  const std::size_t end = std::min(to, from + kLook - std::min(rows_, kLook));
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    Values& channel = channels_[c];
+    for (std::size_t i = from; i < end && channel.steps.size() < kSteps; ++i) {
+      ++channel.rows;
+      if (std::isnan(rows.columns[c][i])) {
+        channel.blank = true;
+        continue;
+      }
+      const std::int64_t now =
+          rows.time_ns.empty() ? static_cast<std::int64_t>(rows_ + i - from) : rows.time_ns[i];
+      if (channel.count++ > 0) {
+        channel.steps.push_back(step_between(channel.last, now));
+        if (channel.blank) channel.over_blanks.push_back(channel.steps.back());
+      }
+      channel.last = now;
+      channel.blank = false;
+    }
+  }
+  rows_ += end - from;
+}
+
+double ChannelClocks::every(std::size_t channel) const {
+  if (channel >= channels_.size()) return 1;
+  const Values& of = channels_[channel];
+  const auto rows = static_cast<double>(of.rows), count = static_cast<double>(of.count);
+  if (of.steps.size() < kKept || kLeastBlank * (rows - count) < rows) return 1;
+  return keeps_own_clock(of.steps, of.over_blanks) ? rows / count : 1;
 }
 
 std::size_t leave_out_blank_rows(RowBlock& rows) {

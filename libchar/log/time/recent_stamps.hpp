@@ -45,4 +45,30 @@ class RecentStamps {
   std::size_t next_ = kMost, size_ = 0;
 };
 
+/// The last first rows of packets, on the grid.
+class PacketStarts {
+ public:
+  void push(std::int64_t index, std::int64_t stamp) {
+    starts_[next_++ % kMost] = {index, stamp};
+    size_ = std::min(size_ + 1, kMost);
+  }
+  bool any() const { return size_ > 0; }
+  /// How much later than those a packet is that begins with this row, the median, ns.
+  double late(std::int64_t index, std::int64_t stamp, double interval_ns) const {
+    std::vector<double> all;
+    for (std::size_t k = 0; k < size_; ++k)
+      all.push_back(step_between(starts_[k].stamp, stamp) -
+                    static_cast<double>(index - starts_[k].index) * interval_ns);
+    return median_in_place(all, Middle::lower);
+  }
+
+ private:
+  struct Start {
+    std::int64_t index, stamp;
+  };
+  static constexpr std::size_t kMost = 8;
+  std::array<Start, kMost> starts_ = {};
+  std::size_t next_ = kMost, size_ = 0;
+};
+
 }  // namespace libchar

@@ -33,6 +33,7 @@ constexpr double kSameRate = 0.02;
 constexpr std::size_t kLeastOdd = 8;   // steps that make a pattern
 constexpr double kLongestPacket = 40;  // rows
 constexpr double kPause = 3;           // times the longest of the usual steps
+constexpr double kNewPacket = 0.3;     // of the time from packet to packet
 constexpr std::size_t kAhead = 16;     // rows looked at before a long step is called a gap
 
 double middle_of(std::vector<double> values) {
@@ -141,7 +142,7 @@ Walk walk(const std::vector<std::int64_t>& stamps,
       for (std::size_t j = 0; j < kAhead && i + j < stamps.size(); ++j)
         lags.push_back((step_between(stamps[i - 1], stamps[i + j]) + late) / ns -
                        static_cast<double>(j + 1));
-      cut = common_lag(std::move(lags)) > 0;
+      cut = common_lag(std::move(lags)) >= 0.5;
       if (cut) out.gaps.push_back(step / ns);
     }
     if (cut) recent.clear();
@@ -289,6 +290,84 @@ StampPattern explanation(const FirstSteps& steps,
                                                                            : StampPattern::disputed;
 }
 
+/// The step of which half of the time consists of longer ones: that from packet to packet, however many rows follow
+/// each other at once in them.
+double step_of_half_the_time(const FirstSteps& steps) {
+  std::vector<double> sorted = steps.rising;
+  std::sort(sorted.begin(), sorted.end());
+  double all = 0, sum = 0;
+  for (const double step : sorted) all += step;
+  for (const double step : sorted)
+    if ((sum += step) >= 0.5 * all) return step;
+  return 0;
+}
+
+/// First rows of packets.
+std::vector<std::size_t> packet_starts(const FirstSteps& steps) {
+  const double least = kNewPacket * step_of_half_the_time(steps);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 1; i < steps.line.size(); ++i)
+    if (steps.line[i] - steps.line[i - 1] > least) out.push_back(i);
+  return out;
+}
+
+/// Rows of a packet, where nearly all have as many; else 0.
+std::size_t rows_of_packets(const std::vector<std::size_t>& starts) {
+  constexpr double kAlike = 0.85;
+  constexpr std::size_t kFewest = 8;
+  if (starts.size() < kFewest) return 0;
+  std::vector<double> sizes;
+  for (std::size_t i = 1; i < starts.size(); ++i)
+    sizes.push_back(static_cast<double>(starts[i] - starts[i - 1]));
+  const auto count = static_cast<double>(sizes.size());
+  const double usual = middle_of(sizes);
+  const auto alike = static_cast<double>(std::count(sizes.begin(), sizes.end(), usual));
+  return usual > 1 && alike >= kAlike * count ? static_cast<std::size_t>(usual) : 0;
+}
+
+/// Time over rows from one first row of a packet to another, the median: packets that are missing here and there do
+/// not move it.
+double packet_interval(const FirstSteps& steps, const std::vector<std::size_t>& starts) {
+  constexpr std::size_t kApart = 64;
+  std::vector<double> slopes;
+  for (std::size_t i = 0, j = 0; i < starts.size(); ++i) {
+    while (j < starts.size() && starts[j] < starts[i] + kApart) ++j;
+    if (j < starts.size())
+      slopes.push_back((steps.line[starts[j]] - steps.line[starts[i]]) /
+                       static_cast<double>(starts[j] - starts[i]));
+  }
+  return middle_of(std::move(slopes));
+}
+
+/// What rows behind the first of a packet are late by, the median over the packets.
+double usual_lag(const FirstSteps& steps, const std::vector<std::size_t>& starts, double ns) {
+  std::vector<double> all;
+  for (const std::size_t i : starts) {
+    std::vector<double> lags;
+    for (std::size_t j = 0; j < kAhead && i + j < steps.line.size(); ++j)
+      lags.push_back((steps.line[i + j] - steps.line[i - 1]) / ns - static_cast<double>(j + 1));
+    all.push_back(common_lag(std::move(lags)));
+  }
+  return std::max(0.0, middle_of(std::move(all)));
+}
+
+/// Rows arrive in packets, or many share the stamp of a coarse clock. Of packets alike those that are missing are
+/// told one by one.
+StampModel in_packets(const FirstSteps& steps, StampModel model) {
+  const std::vector<std::size_t> starts = packet_starts(steps);
+  if (const double interval = packet_interval(steps, starts); interval > 0) model.ns = interval;
+  model.packet = rows_of_packets(starts);
+  if (model.packet > 0) {
+    model.longest_step = kNewPacket * static_cast<double>(model.packet) * model.ns;
+    return model;
+  }
+  std::vector<double> longer = steps.rising;
+  std::sort(longer.begin(), longer.end());
+  model.longest_step = std::max(1.5 * model.ns, 2 * longer[longer.size() * 98 / 100]);
+  model.usual_lag = usual_lag(steps, starts, model.ns);
+  return model;
+}
+
 /// The model of stamps in which rows stand evenly, whatever their steps.
 StampModel evenly(const FirstSteps& steps,
                   const CommonStep& common,
@@ -340,11 +419,16 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps,
   if (!often && !equal_at_times && !common.equal) return out;
   if (on_one_line(line, steps, common.ns))
     return evenly(steps, common, StampPattern::coarse, line.slope, rate_hz);
-  if (!often && !common.equal && !common.tidy)
+  if (common.equal) return in_packets(steps, out);
+  if (!often && !common.tidy)
     out.pattern = StampPattern::equal;  // stamps that scatter by more than a step
-  if (!often || common.equal) return out;
+  if (!often) return out;
   const StampPattern pattern = explanation(steps, common, found.gaps);
-  return pattern == StampPattern::steps ? out : evenly(steps, common, pattern, line.slope, rate_hz);
+  if (pattern == StampPattern::steps) return out;
+  const StampModel even = evenly(steps, common, pattern, line.slope, rate_hz);
+  if (even.pattern != StampPattern::packets) return even;
+  const StampModel packets = in_packets(steps, even);
+  return packets.packet > 0 ? packets : even;
 }
 
 }  // namespace
@@ -400,13 +484,11 @@ std::optional<RateChange> find_rate_change(std::span<const double> rows,
   return best;
 }
 
-std::int64_t common_lag(std::vector<double> lags) {
+double common_lag(std::vector<double> lags) {
   const double own = lags.front();
   const std::size_t quarter = lags.size() / 4;
   std::nth_element(lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(quarter), lags.end());
-  // Of an interval far below a nanosecond there may be more steps than 64 bits count.
-  return static_cast<std::int64_t>(
-      std::llround(std::clamp(std::min(own, lags[quarter]), -9e18, 9e18)));
+  return std::min(own, lags[quarter]);
 }
 
 }  // namespace libchar

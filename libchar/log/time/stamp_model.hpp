@@ -29,8 +29,11 @@ struct StampModel {
   double ns = 0;            ///< sampling interval; what tells a gap from a step
   double longest_step = 0;  ///< a longer one may be a gap, ns
   StampPattern pattern = StampPattern::steps;
-  double step_ns = 0;  ///< the common step alone
-  double span_ns = 0;  ///< rows over time, pauses left out
+  double step_ns = 0;      ///< the common step alone
+  double span_ns = 0;      ///< rows over time, pauses left out
+  std::size_t packet = 0;  ///< rows of each packet, where they are alike; 0: not
+  double usual_lag =
+      0;  ///< of packets: rows that the first of one and those behind it are late by, as common_lag says
 };
 
 /// From the first stamps, in file order. `rate_hz` decides where stamps can be read in two ways.
@@ -53,6 +56,6 @@ std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stam
 
 /// Rows that a row is late by, all of them together: a single late row whose followers are on time
 /// is no gap. `lags` starts with the row's own.
-std::int64_t common_lag(std::vector<double> lags);
+double common_lag(std::vector<double> lags);
 
 }  // namespace libchar

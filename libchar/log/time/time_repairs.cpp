@@ -139,6 +139,13 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
   if (step == 0) {
     if (stamp < last_.as_read) return backward(front, row, stamp);
     if (step_.coarse) return Verdict::keep;
+    if (rows_go_on(front, row, ahead)) {
+      warnings_.add("held_stamp",
+                    "rows with the stamp of the row before, and those behind them in time: they "
+                    "keep their place",
+                    place(front, row));
+      return Verdict::keep;
+    }
     warnings_.add("duplicate_timestamp",
                   "rows with the stamp of the row before: the first is kept",
                   place(front, row));
@@ -153,7 +160,10 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
                   place(front, row));
     return Verdict::keep;
   }
-  const std::int64_t gap = lag(front, row, stamp, ahead);
+  const bool packets = step_.model.packet > 0;
+  const std::int64_t gap =
+      packets ? packet_lag(front, row, stamp, ahead) : lag(front, row, stamp, ahead);
+  if (packets && gap == 0) return Verdict::keep;
   return gap > 0 ? pass_gap(front, row, step, gap, ahead) : place_late_row(front, row, step, stamp);
 }
 
@@ -169,7 +179,7 @@ TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front,
                                            std::size_t row,
                                            std::int64_t step,
                                            std::int64_t& stamp) {
-  const double late = static_cast<double>(step) + recent_.last_late(step_.ns);
+  const double late = static_cast<double>(step) + recent_.rows.last_late(step_.ns);
   if (late > kWildSteps * step_.ns) return drop_wild(front, row);
   if (late <= 2 * step_.ns) return Verdict::keep;
   warnings_.add("late_stamp",
@@ -212,7 +222,7 @@ TimeGrid::Verdict TimeGrid::pass_gap(
       step_.coarse ? static_cast<double>(gap) * step_.ns : static_cast<double>(step) - step_.ns;
   if (static_cast<double>(gap) > kLongGap)
     sketch_.skip(gap, static_cast<std::int64_t>(std::llround(left_out)));
-  recent_.clear();
+  recent_.rows.clear();
   return Verdict::keep;
 }
 
@@ -282,15 +292,15 @@ void TimeGrid::unwrap(const Pending& front,
   if (late > 0) leave_missing(static_cast<std::uint64_t>(late), late);
 }
 
-// Missing grid points before this row: how much later than expected it and the rows behind it are.
-std::int64_t TimeGrid::lag(const Pending& front,
-                           std::size_t row,
-                           std::int64_t stamp,
-                           std::size_t ahead) const {
-  const double last_late = step_.coarse ? 0 : recent_.last_late(step_.ns);
+// How much later than expected this row and those behind it are, in steps; its own first.
+std::vector<double> TimeGrid::lags_ahead(const Pending& front,
+                                         std::size_t row,
+                                         std::int64_t stamp,
+                                         std::size_t ahead) const {
+  const double last_late = step_.coarse ? 0 : recent_.rows.last_late(step_.ns);
   const auto late = [&](std::int64_t t, std::size_t j) {
     return (static_cast<double>(t - last_.stamp) + last_late) / step_.ns -
-           static_cast<double>(j + 1);
+           static_cast<double>(j + 1) - step_.model.usual_lag;
   };
   // Of two rows that changed places the second is dropped: its place is empty.
   const bool close = static_cast<double>(stamp - last_.stamp) < 3 * step_.ns;
@@ -315,7 +325,59 @@ std::int64_t TimeGrid::lag(const Pending& front,
     }
     lags.push_back(late(t, j - dropped));
   }
-  return common_lag(std::move(lags));
+  return lags;
+}
+
+// Missing grid points before this row.
+std::int64_t TimeGrid::lag(const Pending& front,
+                           std::size_t row,
+                           std::int64_t stamp,
+                           std::size_t ahead) const {
+  // Of an interval far below a nanosecond there may be more steps than 64 bits count.
+  return static_cast<std::int64_t>(
+      std::llround(std::clamp(common_lag(lags_ahead(front, row, stamp, ahead)), -9e18, 9e18)));
+}
+
+// Rows missing in front of a packet. One that comes late, and those behind it in time, is none of them.
+std::int64_t TimeGrid::packet_lag(const Pending& front,
+                                  std::size_t row,
+                                  std::int64_t stamp,
+                                  std::size_t ahead) const {
+  constexpr double kOff = 0.35;  // of a packet: further off it is no whole number of them
+  if (!recent_.packets.any()) return 0;
+  const auto rows = static_cast<double>(step_.model.packet);
+  double late = recent_.packets.late(last_.index + 1, stamp, step_.ns);
+  std::size_t item = 0, i = row;
+  const Pending* at = &front;
+  std::int64_t before = stamp;
+  const std::size_t looked = std::min(ahead, 2 * step_.model.packet + 2);
+  for (std::size_t j = 1; j < looked && late > 0; ++j) {
+    if (++i >= at->block.rows) {
+      if (++item >= pending_.size()) break;
+      at = &pending_[item];
+      i = 0;
+    }
+    std::int64_t t = 0, step = 0;
+    if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) ||
+        __builtin_sub_overflow(t, before, &step))
+      break;
+    before = t;
+    if (step > step_.longest)
+      late = std::min(
+          late, recent_.packets.late(last_.index + 1 + static_cast<std::int64_t>(j), t, step_.ns));
+  }
+  const double packets = late / (rows * step_.ns), whole = std::round(packets);
+  if (packets < 0.5 || late > 9e18) return 0;
+  return static_cast<std::int64_t>(std::fabs(packets - whole) < kOff ? whole * rows
+                                                                     : std::round(late / step_.ns));
+}
+
+// A row with the stamp of the one before has a place of its own where those behind it stand where they would then:
+// a logger held its stamp back.
+bool TimeGrid::rows_go_on(const Pending& front, std::size_t row, std::size_t ahead) const {
+  std::vector<double> lags = lags_ahead(front, row, last_.stamp, ahead);
+  lags.erase(lags.begin());
+  return lags.size() >= 4 && median_in_place(lags, Middle::lower) > -0.5;
 }
 
 }  // namespace libchar

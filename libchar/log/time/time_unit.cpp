@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -90,6 +91,40 @@ bool whole_thousands(const std::vector<double>& values) {
       values.begin(), values.end(), [](double x) { return std::fmod(x, 1000) == 0; });
 }
 
+double rate_in(double step, std::int64_t unit_ns) {
+  return 1e9 / (step * static_cast<double>(unit_ns));
+}
+
+constexpr std::array kStampUnits = {
+    std::int64_t{1000000000}, std::int64_t{1000000}, std::int64_t{1000}, std::int64_t{1}};
+
+/// Intervals at which sensors and loggers are read: whole rates up to 2 kHz in fives, or the usual pauses.
+bool usual_interval(double seconds) {
+  constexpr std::array kPauses = {
+      1, 2, 5, 10, 15, 20, 30, 60, 120, 180, 300, 600, 900, 1200, 1800, 3600, 7200, 86400};
+  if (seconds >= 1)
+    return std::any_of(kPauses.begin(), kPauses.end(), [&](int s) { return seconds == s; });
+  const double rate = 1 / seconds;
+  const double unit = rate < 5 ? 1 : 5;
+  return rate <= 2000 && std::fabs(rate - unit * std::round(rate / unit)) < 1e-9 * rate;
+}
+
+/// The step of whole numbers is a usual interval in these units; nobody counts ten seconds and more in fractions.
+std::vector<std::int64_t> usual_units(double step) {
+  constexpr double kLongest = 5;
+  std::vector<std::int64_t> out;
+  for (const std::int64_t unit : kStampUnits) {
+    const double seconds = step * 1e-9 * static_cast<double>(unit);
+    if (step > 1 && usual_interval(seconds) && (unit == kStampUnits[0] || seconds <= kLongest))
+      out.push_back(unit);
+  }
+  return out;
+}
+
+bool says_a_date(const FirstValues& first) {
+  return first.values.empty() || std::fabs(first.values[0]) >= 6.3e8;
+}
+
 // Time since 1970 betrays its unit by its size, where that is a date from 1990 to 2100; a time
 // since power-on by its step, as sensors run at 0.5 Hz to 50 kHz. A phone that has run for half an
 // hour counts as many nanoseconds as a date has milliseconds: then the step decides, unless all are
@@ -108,7 +143,31 @@ std::int64_t guess_unit(const FirstValues& first) {
   if (size >= 1e9 && size < 1e10 && !first.integers) return 1000000000;
   // Whole seconds since 1970 every few seconds; milliseconds would be three weeks since power-on.
   if (size >= 1.2e9 && size < 2.2e9 && step < 200) return 1000000000;
-  return unit_by_step(step);
+  const std::int64_t by_step = unit_by_step(step);
+  if (!first.integers || says_a_date(first)) return by_step;
+  const std::vector<std::int64_t> usual = usual_units(step);
+  return usual.size() == 1 && usual.front() == kStampUnits[0] ? usual.front() : by_step;
+}
+
+/// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
+bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& info) {
+  const double step = usual_step(first.values);
+  std::vector<std::int64_t> units =
+      first.integers ? usual_units(step) : std::vector<std::int64_t>{};
+  if (std::find(units.begin(), units.end(), unit) == units.end()) units.insert(units.begin(), unit);
+  if (units.size() == 1 && unit == kStampUnits[0]) return false;
+  Finding& guess = info.warnings.add(
+      "time_unit_guessed",
+      fmt::format("the stamps state no unit: taken as {} by their step of {}, {} Hz",
+                  unit_name(unit),
+                  brief_text(step, 6),
+                  brief_text(rate_in(step, unit), 6)));
+  guess.severity = units.size() > 1 ? Severity::caution : Severity::note;
+  for (const std::int64_t one : units)
+    guess.help.push_back(
+        {fmt::format("{}: {} Hz.", unit_name(one), brief_text(rate_in(step, one), 6)),
+         {{"time_unit", unit_name(one)}}});
+  return true;
 }
 
 std::int64_t unit_from_options(const std::string& word) {
@@ -133,10 +192,6 @@ std::int64_t unit_said(const ColumnLabel& column) {
 // Xsens devices count SampleTimeFine by 0.1 ms or by 1 us, at 1 to 2000 Hz the one, at 1 to 120 Hz the other.
 std::int64_t guess_fine(const FirstValues& first) {
   return usual_step(first.values) < 2000 ? 100000 : 1000;
-}
-
-double rate_in(double step, std::int64_t unit_ns) {
-  return 1e9 / (step * static_cast<double>(unit_ns));
 }
 
 bool rates_agree(double rate_hz, double stated_hz) {
@@ -203,12 +258,14 @@ StampUnit find_time_unit(const TableFront& table,
         ascii_lower(stem) == "sampletimefine" ? guess_fine(first) : guess_unit(first);
     unit.ns = comparable ? unit_of_rate(guess, step, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
-    info.guesses.push_back(fmt::format(
-        "time unit: {}, from {} (`time_unit` says otherwise)",
-        unit_name(unit.ns),
-        comparable
-            ? fmt::format("the rate of {} Hz that the file states", shortest(*table.stated_rate_hz))
-            : "the size and step of the stamps"));
+    const bool by_step = !comparable && !says_a_date(first) && first.values.size() > 1;
+    if (!by_step || !say_guess_by_step(first, unit.ns, info))
+      info.guesses.push_back(fmt::format("time unit: {}, from {} (`time_unit` says otherwise)",
+                                         unit_name(unit.ns),
+                                         comparable
+                                             ? fmt::format("the rate of {} Hz that the file states",
+                                                           shortest(*table.stated_rate_hz))
+                                             : "the size and step of the stamps"));
   } else if (comparable) {
     warn_of_stated_rate(table, step, unit.ns, info);
   }

@@ -229,15 +229,13 @@ void SceneSource::scan(Progress& progress) {
     const std::size_t column = column_of(log, wanted_[k], scene_->file, "recording");
     columns_.push_back(column);
     if (k >= own_) continue;
-    if (k < scene_->sensors.size()) {
-      const bool seen = column < first.channels.size();
-      info_.presence.push_back(seen ? first.channels[column] : Presence{});
-      if (seen)
-        note_bad_samples(first.meters[column].finish(),
-                         scene_->sensors[k].name,
-                         scene_->sensors.size() >= 3,
-                         info_.samples_say);
-    }
+    const bool sensor = k < scene_->sensors.size(), seen = column < first.channels.size();
+    if (sensor) info_.presence.push_back(seen ? first.channels[column] : Presence{});
+    if (seen)
+      note_bad_samples(first.meters[column].finish(),
+                       sensor ? scene_->sensors[k].name : wanted_[k] + ", the reference",
+                       sensor && scene_->sensors.size() >= 3,
+                       info_.samples_say);
     (k < scene_->sensors.size() ? info_.units : info_.reference_units)
         .push_back(log.channels[column].unit);
   }

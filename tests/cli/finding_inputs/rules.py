@@ -31,6 +31,7 @@ WEIGHS = ("export", "plot", "compare", "lot", "simulate")  # say what is doubtfu
 OTHER_SEVERITIES = {
     "constant": {"bad"},  # of a channel without a fit
     "counter": {"bad"},  # likewise
+    "time_unit_guessed": {"caution"},  # another unit is as usual
     "motion": {"bad"},  # more than a tenth of N
     "stuck": {"bad"},  # more than a hundredth of the samples
     "not_gravity": {"caution"},  # gravity taken out: nothing says a factor

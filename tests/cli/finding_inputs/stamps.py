@@ -48,6 +48,14 @@ def in_turns(steps):
     return instants
 
 
+def doubled():
+    """Two rows stand there twice."""
+    times = even()
+    for at in (3000, 2000):
+        times.insert(at, times[at])
+    return times
+
+
 def two_rates():
     """A few rows at 60 Hz among those at 100 Hz."""
     times, now = [], 0.0
@@ -82,7 +90,8 @@ def calendar(first, rows, step_s, again=()):
 
 INPUTS = {
     "backward_timestamp": Input(text("backward.csv", stamped(changed([2000], lambda t: t - 1.234)))),
-    "duplicate_timestamp": Input(text("duplicate.csv", stamped(changed([2000, 3000], lambda t: t - 0.01)))),
+    "duplicate_timestamp": Input(text("duplicate.csv", stamped(doubled))),
+    "held_stamp": Input(text("held.csv", stamped(changed([2000, 3000], lambda t: t - 0.01)))),
     "gap": Input(text("gap.csv", stamped(changed(range(2000, 4000), lambda t: t + 3)))),
     "wild_stamp": Input(text("wild.csv", stamped(changed([2500], lambda t: 4294967.295)))),
     "late_stamp": Input(text("late.csv", stamped(changed([2000], lambda t: t + 0.5)))),

@@ -76,6 +76,8 @@ INPUTS = {
                           not_in={"allan": "it reads the channel alone, and says own_grid"}),
     "own_grid": Input(text("own_grid.csv", slow), made_by="characterize"),
     "own_rows": Input(text("own_rows.csv", slow), ("-c", "temp")),
+    "time_unit_guessed": Input(text("unit.csv", lambda: "time,w[deg/s]\n" + "".join(
+        f"{10 * i},{v:.5f}\n" for i, v in enumerate(noise(2000))))),
     "stamps_apart": Input(text("turns.csv", in_turn), ("--group-by", "device")),
     "stated_rate": Input(text("stated.csv", lambda: "# sample rate: 200 Hz\n" + plain())),
 }

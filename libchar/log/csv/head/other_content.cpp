@@ -130,7 +130,9 @@ void refuse_binary(std::string_view head, const std::string& file) {
       .hint("`format` raw with a sidecar reads raw binary (docs: raw binary)");
 }
 
-void refuse_magic(std::string_view head, const std::string& file) {
+}  // namespace
+
+void refuse_other_format(std::string_view head, const std::string& file) {
   for (const Magic& magic : kMagics)
     if (head.size() > magic.at && head.substr(magic.at).starts_with(magic.bytes))
       throw refusal(file, std::string(magic.what) + ", not CSV").hint(magic.hint);
@@ -144,11 +146,9 @@ void refuse_magic(std::string_view head, const std::string& file) {
         .hint("ObsPy reads them: obspy.read(FILE)[0].write('log.slist', format='SLIST')");
 }
 
-}  // namespace
-
 void refuse_other_content(std::string_view head, const std::string& file) {
   if (head.empty()) throw input_error("E0322", at(file, 1, 1, 0)).says("the file is empty");
-  refuse_magic(head, file);
+  refuse_other_format(head, file);
   refuse_binary(head, file);
   const std::size_t front = head.find_first_not_of(" \t\r\n");
   if (front == std::string_view::npos) return;

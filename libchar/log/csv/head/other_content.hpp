@@ -10,5 +10,7 @@ namespace libchar::csv {
 /// UTF-16, nothing at all, or binary data. NUL bytes alone are left to the row parser, which knows
 /// logs that a power failure cut.
 void refuse_other_content(std::string_view head, const std::string& file);
+/// The same of formats that are told by their first bytes alone, whatever the file is called.
+void refuse_other_format(std::string_view head, const std::string& file);
 
 }  // namespace libchar::csv

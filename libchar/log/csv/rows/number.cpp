@@ -22,7 +22,7 @@ bool is_word(std::string_view text, std::string_view word) {
 }
 
 bool means_missing(std::string_view text) {
-  if (text.empty()) return true;
+  if (text.empty() || text == "-" || text == "--") return true;
   if (is_digit(text.back())) return false;
   for (const char* word :
        {"nan", "na", "n/a", "null", "none", "-nan", "+nan", "-nan(ind)", "nan(ind)", "#n/a", "nil"})
