@@ -14,11 +14,13 @@
 #include "heap_meter.hpp"
 #include "help/flag_names.hpp"
 #include "help/marked_line.hpp"
+#include "libchar/characterize/compare/reported_findings.hpp"
 #include "libchar/core/file/folder_lock.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -66,6 +68,24 @@ void report_findings(Session& session,
   if (findings.empty()) return;
   const std::string text = libchar::printable(channel) + ":\n" + libchar::findings_text(findings);
   session.terminal.note(text.substr(0, text.size() - 1));
+}
+
+void report_findings(Session& session,
+                     const std::string& document,
+                     std::span<const libchar::Finding> findings,
+                     const std::vector<std::string>& channels) {
+  std::vector<libchar::Finding> said;
+  for (libchar::Finding one : findings) {
+    const auto fits = [&](const std::string& pattern) {
+      return libchar::matches(pattern, one.subject);
+    };
+    if (one.subject != libchar::detail::kOfRecording && !channels.empty() &&
+        std::none_of(channels.begin(), channels.end(), fits))
+      continue;
+    one.sentence = one.subject + ": " + one.sentence;
+    said.push_back(std::move(one));
+  }
+  report_findings(session, document, said);
 }
 
 void refuse_strict(const Session& session) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,11 @@ void report_warnings(Session& session, const libchar::LogInfo& info);
 void report_findings(Session& session,
                      const std::string& channel,
                      const std::vector<libchar::Finding>& findings);
+/// Of a document: what is said of the recording and of the channels that fit one of the patterns (none: all).
+void report_findings(Session& session,
+                     const std::string& document,
+                     std::span<const libchar::Finding> findings,
+                     const std::vector<std::string>& channels);
 void report_warnings(Session& session, const libchar::Findings& warnings, const std::string& file);
 
 /// With --strict nothing is written of an input that has warnings: throws where one was said.

@@ -439,3 +439,28 @@ TEST_CASE("events: too short a record is refused in a sentence") {
   const std::vector<double> y(40, 1.0);
   CHECK_THROWS_AS(event_series(y, kEventRate), Error);
 }
+
+TEST_CASE("events: pauses are none, and a step inside a session has its own time") {
+  constexpr std::size_t kSession = 4000, kPause = 12000;
+  test::Gaussian gauss(11);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  int invented = 0;
+  std::vector<double> record;
+  for (int r = 0; r < 40; ++r) {
+    record.clear();
+    for (int session = 0; session < 4; ++session) {
+      if (session > 0) record.insert(record.end(), kPause, none);
+      const double offset = 3 * session;  // levels of sessions are turn-on offsets
+      for (std::size_t i = 0; i < kSession; ++i) record.push_back(offset + gauss());
+    }
+    invented += find_events(event_series(record, 100), fitted_powers()).events.empty() ? 0 : 1;
+  }
+  CHECK(invented <= 1);
+  const std::size_t at = 2 * (kSession + kPause) + kSession / 2;
+  for (std::size_t i = at; i < at + kSession / 2; ++i) record[i] += 0.5;
+  const EventSearch found = find_events(event_series(record, 100), fitted_powers());
+  REQUIRE(found.events.size() == 1);
+  CHECK(found.events[0].kind == EventKind::step);
+  CHECK(found.events[0].at_s == Approx(static_cast<double>(at) / 100).margin(1));
+  CHECK(found.events[0].size == Approx(0.5).margin(0.15));
+}

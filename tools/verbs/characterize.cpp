@@ -204,6 +204,20 @@ std::vector<Characterization> all_characterized(Session& session,
   return results;
 }
 
+/// What asks for caution in one of several recordings.
+void report_of_runs(Session& session, const std::vector<Characterization>& results) {
+  for (const Characterization& result : results) {
+    std::vector<Finding> said;
+    for (const ChannelResult& channel : result.channels)
+      for (Finding one : judge(channel).findings) {
+        if (one.severity == Severity::note) continue;
+        one.subject = channel.channel.name;
+        said.push_back(std::move(one));
+      }
+    report_findings(session, result.log.file, said, {});
+  }
+}
+
 /// The limits of the data sheet hold for what the runs together say.
 void run_pooled(Session& session,
                 const CharacterizeVerb& verb,
@@ -229,6 +243,7 @@ void run_pooled(Session& session,
   const auto removed = write_folders(session, verb, all);
   if (verb.json) return print(dump_json(runs_json(report)));
   print_beside(session, runs_text(report, text_look()));
+  report_of_runs(session, results);
   say_written(session, paths_of(all.back().files), removed);
 }
 

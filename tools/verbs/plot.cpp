@@ -9,7 +9,6 @@
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/figure/draw_figure.hpp"
@@ -111,22 +110,6 @@ std::vector<std::string> named(std::vector<std::string> paths) {
   return paths;
 }
 
-/// What is known of the channels that are drawn.
-void report_drawn(Session& session,
-                  const FigureSource& source,
-                  const std::vector<std::string>& channels) {
-  std::vector<Finding> drawn;
-  for (Finding one : source.findings) {
-    const auto fits = [&](const std::string& pattern) { return matches(pattern, one.subject); };
-    if (one.subject != detail::kOfRecording && !channels.empty() &&
-        std::none_of(channels.begin(), channels.end(), fits))
-      continue;
-    one.sentence = one.subject + ": " + one.sentence;
-    drawn.push_back(std::move(one));
-  }
-  report_findings(session, source.name, drawn);
-}
-
 void run_plot(Session& session, PlotVerb& verb) {
   if (verb.list) return print_kinds();
   refuse_nothing_asked(verb);
@@ -148,7 +131,8 @@ void run_plot(Session& session, PlotVerb& verb) {
   if (!verb.gnuplot.empty()) made.push_back({verb.gnuplot, figure_gnuplot(figure, verb.drawing)});
   if (!verb.csv.empty()) made.push_back({verb.csv, figure_csv(figure)});
   deliver(made, verb.force);
-  for (const FigureSource& source : sources) report_drawn(session, source, verb.figure.channels);
+  for (const FigureSource& source : sources)
+    report_findings(session, source.name, source.findings, verb.figure.channels);
   session.terminal.warn(warnings, verb.output);
 }
 

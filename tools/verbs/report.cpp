@@ -18,7 +18,7 @@ struct ReportVerb {
   bool latex = false, markdown = false, csv = false, force = false;
 };
 
-void run_report(const ReportVerb& verb) {
+void run_report(Session& session, const ReportVerb& verb) {
   if (!verb.output.empty() && verb.output != "-")
     foresee_output(verb.output, {verb.file, report_file(verb.file)}, verb.force);
   const TableFormat format = verb.latex ? TableFormat::latex
@@ -30,7 +30,9 @@ void run_report(const ReportVerb& verb) {
       "the folder with the report of each device");
   std::string text;
   if (is_characterization_report(verb.file)) {
-    text = coefficient_table(read_characterization_report(verb.file), verb.channels, format);
+    const ReportedCharacterization report = read_characterization_report(verb.file);
+    text = coefficient_table(report, verb.channels, format);
+    report_findings(session, report.file, report.findings, verb.channels);
   } else {
     const ReplayReport replay = read_replay_report(verb.file);
     if (!verb.channels.empty())
@@ -42,7 +44,7 @@ void run_report(const ReportVerb& verb) {
   write_whole_file(verb.output, text, verb.force);
 }
 
-std::function<void()> report_options(VerbOptions& options, Session& /*session*/) {
+std::function<void()> report_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReportVerb>();
   options
       .add_text("FILE",
@@ -66,7 +68,7 @@ std::function<void()> report_options(VerbOptions& options, Session& /*session*/)
   options.add_text("-o,--output", verb->output, "write there instead of to stdout")
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");
-  return [verb] { run_report(*verb); };
+  return [verb, &session] { run_report(session, *verb); };
 }
 
 }  // namespace

@@ -95,4 +95,50 @@ EventSeries event_series(std::span<const double> whole, double rate_hz, std::uin
   return series;
 }
 
+std::vector<Pause> leave_out_pauses(EventSeries& series) {
+  constexpr double kShare = 0.1;  // of the recorded values; shorter ones are bridged
+  constexpr double kShortest = 16;
+  const auto point = [&](double at_s) {
+    return std::round((at_s - series.start_s) / series.step_s);
+  };
+  double present = static_cast<double>(series.value.size());
+  for (const Interval& gap : series.unseen_s) present -= point(gap.high) - point(gap.low);
+  std::vector<Pause> pauses;
+  EventSeries joined = series;
+  joined.value.clear();
+  joined.unseen_s.clear();
+  double begin = 0, left_out = 0;
+  const auto session_until = [&](double end) {
+    joined.value.insert(joined.value.end(),
+                        series.value.begin() + static_cast<std::ptrdiff_t>(begin),
+                        series.value.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  for (const Interval& gap : series.unseen_s) {
+    const double low = point(gap.low), high = point(gap.high);
+    if (high - low < std::max(kShortest, kShare * present)) {
+      joined.unseen_s.push_back({gap.low - left_out, gap.high - left_out});
+      continue;
+    }
+    session_until(low);
+    pauses.push_back({gap.low - left_out, gap.high - gap.low});
+    left_out += gap.high - gap.low;
+    begin = high;
+  }
+  if (pauses.empty()) return pauses;
+  session_until(static_cast<double>(series.value.size()));
+  std::uint64_t n = joined.value.size();
+  if (n < kFewest) return {};
+  while (n > kFewest && !transforms_fast(n)) --n;
+  joined.value.resize(n);
+  series = std::move(joined);
+  return pauses;
+}
+
+double with_pauses(std::span<const Pause> pauses, double at_s) {
+  double out = at_s;
+  for (const Pause& pause : pauses)
+    if (pause.at_s <= at_s) out += pause.length_s;
+  return out;
+}
+
 }  // namespace libchar

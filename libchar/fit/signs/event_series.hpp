@@ -26,6 +26,17 @@ struct EventSeries {
   };
 };
 
+/// A long pause: `at_s` on the axis without pauses.
+struct Pause {
+  double at_s = 0, length_s = 0;
+};
+
+/// A record of several sessions on an axis without its long pauses. Changes nothing, and says no pause, where there is
+/// none.
+std::vector<Pause> leave_out_pauses(EventSeries& series);
+/// The instant of the record.
+double with_pauses(std::span<const Pause> pauses, double at_s);
+
 /// At most `points` means over the whole record; NaN samples are left out of them.
 EventSeries event_series(std::span<const double> record,
                          double rate_hz,

@@ -27,7 +27,9 @@ constexpr double kNotTold = 6;  ///< of LR: odds of twenty to one
 constexpr double kGate =
     0.7;  ///< share of a threshold that a score must reach to be looked at again
 constexpr double kMostOfEnds = 0.1;  ///< of EventSeries::Noise: beyond, there is no search
-constexpr double kTauDrop = 3.8415;  ///< chi-square of one degree of freedom, 95 %
+constexpr int kRounds = 4;
+constexpr std::size_t kMostPauses = 16;  ///< beyond, sessions are too many for offsets of their own
+constexpr double kTauDrop = 3.8415;      ///< chi-square of one degree of freedom, 95 %
 
 /// What a search has in hand.
 struct Hypothesis {
@@ -48,6 +50,11 @@ struct Search {
   std::uint64_t margin = 0;
   std::vector<double> coefficients;  ///< k = 1..n-1 at [k-1]
   std::vector<EventShape> gaps;      ///< the longest missing stretches, as steps
+  std::span<const Pause> pauses;     ///< that are left out of the series
+  /// Steps between the sessions: what a sensor reads when it is switched on again is an offset, and no event. They
+  /// stand in front of the events in every regression.
+  std::size_t offsets() const { return pauses.size(); }
+  double instant(double at_s) const { return with_pauses(pauses, at_s); }
 };
 
 /// The share of a step that a point has.
@@ -249,9 +256,9 @@ bool beside_newest(const std::vector<EventShape>& shapes, std::size_t i) {
 
 /// What was found before is placed once more beside the newest, and that beside them.
 void place_again(const Search& search, Hypothesis& now) {
-  if (now.fit.shape.size() < 2) return;
+  if (now.fit.shape.size() < search.offsets() + 2) return;
   std::vector<EventShape> shapes = now.fit.shape;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
+  for (std::size_t i = search.offsets(); i < shapes.size(); ++i) {
     if (shapes[i].kind == EventKind::ramp || !beside_newest(shapes, i)) continue;
     std::vector<EventShape> others = shapes;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
@@ -263,7 +270,7 @@ void place_again(const Search& search, Hypothesis& now) {
 
 /// What has become less than its threshold beside the others goes.
 void drop_weak(const Search& search, Hypothesis& now) {
-  for (std::size_t i = 0; i + 1 < now.fit.shape.size();) {
+  for (std::size_t i = search.offsets(); i + 1 < now.fit.shape.size();) {
     const double score = now.fit.size(static_cast<Eigen::Index>(i)) / now.fit.sd(i);
     if (std::abs(score) >= kGate * now.threshold[i]) {
       ++i;
@@ -364,8 +371,9 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i, doubl
   if (shape.kind == EventKind::step) {
     const Interval place = step_interval(search, beside, now, shape);
     const double start_s = search.series.start_s;
-    event.at_s = start_s + (shape.bridged > 0 ? place.high : shape.at) * step_s;
-    event.at_ci95 = {start_s + place.low * step_s, start_s + place.high * step_s};
+    event.at_s = search.instant(start_s + (shape.bridged > 0 ? place.high : shape.at) * step_s);
+    event.at_ci95 = {search.instant(start_s + place.low * step_s),
+                     search.instant(start_s + place.high * step_s)};
     event.in_gap = shape.bridged > 0;
   }
   if (shape.kind == EventKind::warm_up) {
@@ -433,7 +441,10 @@ void judge_many(const Search& search,
             unit,
             telegraph.jumps)));
   } else if (found.more) {
-    const Interval quiet = longest_without_steps(found.events, search.series.start_s, duration_s);
+    const Interval quiet = longest_without_steps(
+        found.events,
+        search.series.start_s,
+        search.instant(search.series.start_s + duration_s) - search.series.start_s);
     Finding many = finding("events_left_in",
                            fmt::format("There are more than {} steps and drifts: the record is no "
                                        "noise with a few of them, but "
@@ -451,10 +462,15 @@ void judge_many(const Search& search,
 
 }  // namespace
 
-EventSearch find_events(const EventSeries& series,
+EventSearch find_events(const EventSeries& whole,
                         const NoisePowers& powers,
-                        const EventOptions& options,
+                        const EventOptions& asked,
                         std::string_view unit) {
+  EventSeries series = whole;
+  const std::vector<Pause> pauses = leave_out_pauses(series);
+  EventOptions options = asked;
+  options.ramp =
+      options.ramp && pauses.empty();  // it goes through the sessions, whose means are gone
   const std::uint64_t n = series.value.size();
   Dct dct(n);
   const std::span<const double> c = dct.transform(series.value);
@@ -464,12 +480,21 @@ EventSearch find_events(const EventSeries& series,
                 {n, series.per_point},
                 std::max<std::uint64_t>(8, n / 500),
                 {},
-                gaps_of(series)};
+                gaps_of(series),
+                pauses};
   search.coefficients.assign(c.begin() + 1, c.end());
 
   Hypothesis now;
   now.fit.rest = search.coefficients;
+  std::vector<EventShape> offsets;
+  for (const Pause& pause : pauses)
+    offsets.push_back({EventKind::step, std::round((pause.at_s - series.start_s) / series.step_s)});
+  now.threshold.assign(offsets.size(), 0.0);
+  now.gained.assign(offsets.size(), 0.0);
+  now.not_told.resize(offsets.size());
   fit_both(search, {}, now);
+  // Offsets look like slow noise at first, which hides them.
+  for (int i = 0; i < kRounds && !offsets.empty(); ++i) fit_both(search, offsets, now);
   EventSearch found;
   const int most = now.ends > kMostOfEnds ? -1 : options.most;
   for (int round = 0; round <= most; ++round) {
@@ -482,7 +507,7 @@ EventSearch find_events(const EventSeries& series,
     drop_weak(search, now);
   }
   const std::vector<double> sd = sds_of(search, now);
-  for (std::size_t i = 0; i < now.fit.shape.size(); ++i) {
+  for (std::size_t i = search.offsets(); i < now.fit.shape.size(); ++i) {
     found.events.push_back(event_of(search, now, i, sd[i]));
     found.findings.push_back(finding("event", event_sentence(found.events.back(), unit)));
     if (found.events.back().kind == EventKind::step)

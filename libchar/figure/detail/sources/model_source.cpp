@@ -98,6 +98,11 @@ void add_model(FigureSource& out, const SensorModel& model) {
       mark.text = mark_text(mark.term, simulated_value(model[mark.term]), curve.unit);
     out.curves.push_back(std::move(curve));
   }
+  for (Finding one : model.findings) {
+    if (one.severity == Severity::note) continue;
+    one.subject = model.channel;
+    out.findings.push_back(std::move(one));
+  }
 }
 
 }  // namespace libchar
