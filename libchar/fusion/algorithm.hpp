@@ -21,6 +21,7 @@
 //   Eigen::MatrixXd weights() const;      n x r, at present
 //   Eigen::VectorXd variances() const;    of a sample's noise, channel by channel, as estimated now
 //   const FaultLog& faults() const;
+//   const HandOverLog& hand_overs() const;   of one that has several estimators
 //   void remarks(Findings&) const;        what the reader of the result must know
 //   static bool looks_ahead(const Settings&);   and   void look(const Sample& y);
 //       true: it is shown all instants of the run before the first step, then finish_learning, then the
@@ -44,6 +45,7 @@
 #include "libchar/fusion/array.hpp"
 #include "libchar/fusion/description.hpp"
 #include "libchar/fusion/fault_log.hpp"
+#include "libchar/fusion/hand_over.hpp"
 #include "libchar/fusion/learnt.hpp"
 #include "libchar/fusion/options.hpp"
 
@@ -129,6 +131,10 @@ concept HasVariances = requires(const A a) {
 template <class A>
 concept HasFaults = requires(const A a) {
   { a.faults() } -> std::same_as<const FaultLog&>;
+};
+template <class A>
+concept HasHandOvers = requires(const A a) {
+  { a.hand_overs() } -> std::same_as<const HandOverLog&>;
 };
 template <class A>
 concept HasRemarks = requires(const A a, Findings& warnings) {

@@ -16,6 +16,7 @@ struct Needs {
   std::ptrdiff_t more_than_inputs = 0;  ///< n must exceed this many times r (MINQUE: 2)
   std::int64_t learning_samples = 0;  ///< at least so many instants with a reference before the run
   bool reference = false;             ///< learns from a reference, in the learning window
+  bool reference_helps = false;       ///< learns from it where there is one, and runs without
   /// looks at the reference of the run itself: a bound, not a method
   bool reference_throughout = false;
   bool noise_levels = false;  ///< a noise variance for each channel

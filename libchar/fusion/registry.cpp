@@ -224,6 +224,7 @@ constexpr std::array kAlgorithms{
     entry<ShrunkLeastSquares>(),
     entry<NonNegativeLeastSquares>(),
     entry<Perceptron>(),
+    entry<NeuralSimplex>(),
     entry<KalmanTakensTaught>(),
     entry<TiltGyroscope>(),
     entry<TiltAccelerometer>(),

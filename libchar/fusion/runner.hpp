@@ -34,6 +34,7 @@ class Runner {
   virtual std::optional<Eigen::MatrixXd> weights() const = 0;
   virtual std::optional<Eigen::VectorXd> variances() const = 0;
   virtual const FaultLog* faults() const = 0;
+  virtual const HandOverLog* hand_overs() const { return nullptr; }
   virtual void remarks(Findings& warnings) const = 0;
 };
 
@@ -47,11 +48,12 @@ A make_algorithm(const Array& array, const Settings& settings) {
 
 template <Algorithm A>
 class RunnerOf final : public Runner {
-  static constexpr bool kLearns =
-      A::description.needs.reference || A::description.needs.reference_throughout;
+  static constexpr bool kMayLearn = A::description.needs.reference_helps;
+  static constexpr bool kLearns = A::description.needs.reference ||
+                                  A::description.needs.reference_throughout || kMayLearn;
   static_assert(
       kLearns == Learns<A>,
-      "description.needs.reference (or reference_throughout) and learn(y, truth) go together");
+      "description.needs.reference (or reference_throughout, reference_helps) and learn(y, truth) go together");
   static_assert(HasOptions<A> || !std::constructible_from<A, const Array&, const Settings&>,
                 "a constructor with Settings goes with a table `options`");
 
@@ -117,6 +119,10 @@ class RunnerOf final : public Runner {
   }
   const FaultLog* faults() const override {
     if constexpr (HasFaults<A>) return &algorithm_.faults();
+    return nullptr;
+  }
+  const HandOverLog* hand_overs() const override {
+    if constexpr (HasHandOvers<A>) return &algorithm_.hand_overs();
     return nullptr;
   }
   void remarks([[maybe_unused]] Findings& warnings) const override {

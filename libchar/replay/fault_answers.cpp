@@ -37,6 +37,23 @@ std::vector<FoundFault> found_faults(const fusion::FaultLog& log,
   return out;
 }
 
+std::vector<LeadStretch> lead_stretches(const fusion::HandOverLog& log,
+                                        double start_s,
+                                        double rate_hz) {
+  std::vector<LeadStretch> out;
+  bool open = false;
+  for (const fusion::HandOver& event : log.events()) {
+    const double time_s = start_s + static_cast<double>(event.sample) / rate_hz;
+    if (open) {
+      out.back().to_s = time_s;
+      out.back().ended = std::string(fusion::name(event.reason));
+    }
+    open = event.to != fusion::Lead::baseline;
+    if (open) out.push_back({std::string(fusion::name(event.to)), time_s, {}, ""});
+  }
+  return out;
+}
+
 std::vector<FaultAnswer> answers_to(const std::vector<SensorFault>& known,
                                     const std::vector<FoundFault>& found,
                                     double start_s,

@@ -144,7 +144,7 @@ struct BlindScore {
       0;  ///< of leave_one_out_rms squared, that is in the sensors' mean differences from the others
 };
 
-struct AlgorithmResult {
+struct AlgorithmResult : FaultsFound {
   std::string label;  ///< the name, with its options when one algorithm runs twice
   const fusion::Description* description = nullptr;
   fusion::Settings settings = fusion::Settings();
@@ -178,10 +178,6 @@ struct AlgorithmResult {
       0;  ///< RMS over sensors and time of ln(variance / true error variance); NaN: unknown
   Timeline weight_track;  ///< one series per sensor; empty when the weights are constant
   Timeline variance_track;
-  bool watches_faults = false;  ///< it takes sensors out; `faults` and `answers` mean something
-  std::vector<FoundFault> faults;
-  std::uint64_t faults_not_kept = 0;
-  std::vector<FaultAnswer> answers;
   Findings remarks;
 };
 

@@ -328,7 +328,8 @@
     const known = report.faults.map((f, i) => Object.assign(bar(f), { answer: answerTo(i) })).filter((p) => p.x[0] < p.x[1]);
     known.forEach((p) => { p.note = [valued(p.f), p.answer].filter(Boolean).join(", "); });
     const found = (tracked ? tracked.faults : []).map((f) => Object.assign(bar(f), { note: f.kind.replace("_", " ") }));
-    const rows = faultRows(known.concat(found)), drawn = (bars) => bars.filter((p) => rows.includes(p.y));
+    const led = (tracked && tracked.leads ? tracked.leads : []).map((f) => Object.assign(bar(f), { y: String(names.length), note: f.lead + (f.ended ? ", until: " + f.ended.replace("_", " ") : "") }));
+    const rows = faultRows(known.concat(found)).concat(led.length ? [String(names.length)] : []), drawn = (bars) => bars.filter((p) => rows.includes(p.y));
     figure.querySelector(".canvas").style.height = 90 + Math.max(120, rows.length * 44) + "px";
     const ink = (p) => sensorStyle(Number(p.y)).colour, plain = { grouped: false, minBarLength: 3, borderSkipped: false };
     const tip = (what) => (p) => [names[p.y] + ": " + what(p), span(p.f)];
@@ -337,10 +338,11 @@
     const sets = [
       bars("out, by " + by, out, { backgroundColor: drawn(out).map(ink), swatch: c.dim, barPercentage: 0.3, above: 0.3, order: 1, tip: tip((p) => "out, " + p.note) }),
       bars("re-weighted, by " + by, noisy, { backgroundColor: c.paper, borderColor: drawn(noisy).map(ink), borderWidth: 2, swatch: noisy.length ? c.border : "", barPercentage: 0.24, above: 0.3, order: 1, tip: tip(() => "noisier, less weight") }),
+      bars("network leads", led, { backgroundColor: c.dim, swatch: led.length ? c.dim : "", barPercentage: 0.3, above: 0.3, order: 1, tip: (p) => ["leads: " + p.note, span(p.f)] }),
       bars("known to the scene", known, { backgroundColor: c.known, swatch: known.length ? c.known : "", barPercentage: 0.9, above: -0.3, order: 2, tip: tip((p) => p.note) }),
     ].filter((set) => set.swatch);
-    const y = { type: "category", labels: rows, offset: true, ticks: { color: c.ink, autoSkip: false, callback: (v) => shortened(names[rows[v]] || "", chartWidth(figure)) }, grid: { color: c.fine, borderColor: c.border } };
-    const all = options(timeAxis(), y), silent = known.length + found.length ? [] : [nothing("No fault is known, and none was found")];
+    const y = { type: "category", labels: rows, offset: true, ticks: { color: c.ink, autoSkip: false, callback: (v) => shortened(names[rows[v]] || "leads", chartWidth(figure)) }, grid: { color: c.fine, borderColor: c.border } };
+    const all = options(timeAxis(), y), silent = known.length + found.length + led.length ? [] : [nothing("No fault is known, and none was found")];
     Object.assign(all, { parsing: true, normalized: false, indexAxis: "y" });
     all.plugins.legend = plainLegend();
     all.plugins.tooltip.callbacks.label = (item) => item.dataset.tip(item.raw);

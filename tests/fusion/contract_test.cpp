@@ -48,7 +48,8 @@ TEST_CASE("every description is complete, every option's default is in its range
     CHECK_FALSE(entry.description->title.empty());
     CHECK_FALSE(entry.description->source.empty());
     CHECK_FALSE(entry.description->complexity.empty());
-    CHECK((entry.description->needs.reference || entry.description->needs.reference_throughout) ==
+    const Needs& needs = entry.description->needs;
+    CHECK((needs.reference || needs.reference_throughout || needs.reference_helps) ==
           !entry.description->learning_complexity.empty());
     for (const Option& option : entry.options) {
       INFO(option.name);

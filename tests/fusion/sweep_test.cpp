@@ -35,7 +35,8 @@ std::unique_ptr<Runner> ready(const Entry& entry, const test::FusionScene& scene
   if (!why_not(*entry.description, scene.array).empty()) return nullptr;
   try {
     auto runner = entry.make(scene.array, Settings(entry.options));
-    if (entry.description->needs.reference || entry.description->needs.reference_throughout) {
+    if (entry.description->needs.reference || entry.description->needs.reference_throughout ||
+        entry.description->needs.reference_helps) {
       runner->learn(scene.y, scene.truth);
       runner->finish_learning();
     }

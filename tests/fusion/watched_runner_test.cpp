@@ -48,7 +48,7 @@ std::unique_ptr<Runner> watched(const Entry& entry, const WatchedScene& scene, b
   Settings settings(entry.options);
   settings.set("fault_detection", on ? 1 : 0);
   auto runner = entry.make(scene.array, settings);
-  if (entry.description->needs.reference)
+  if (entry.description->needs.reference || entry.description->needs.reference_helps)
     runner->learn(scene.y.leftCols(2000), scene.truth.leftCols(2000));
   runner->finish_learning();
   return runner;

@@ -293,7 +293,8 @@ struct Fused {
 Fused fused(const fusion::Entry& entry, const StressArray& array) {
   const fusion::Settings settings(entry.options);
   const auto runner = entry.make(array.array, settings);
-  if (entry.description->needs.reference) runner->learn(array.learning, array.learning_truth);
+  const fusion::Needs& needs = entry.description->needs;
+  if (needs.reference || needs.reference_helps) runner->learn(array.learning, array.learning_truth);
   if (entry.description->needs.reference_throughout) runner->learn(array.y, array.truth);
   if (entry.looks_ahead(settings)) runner->look(array.y);
   runner->finish_learning();

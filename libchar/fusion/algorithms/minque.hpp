@@ -104,6 +104,11 @@ struct Minque {
   Eigen::VectorXd variances() const;
   const FaultLog& faults() const { return detector_ ? detector_->log() : watch_.log(); }
   void remarks(Findings& warnings) const;
+  /// Of one channel, without a trip to the heap.
+  double noise_variance(std::size_t i) const {
+    return general_ ? general_->variance(i) : scalar_.variance(i);
+  }
+  bool leaves_out(std::size_t i) const { return out(i); }
 
  private:
   template <class Variances>

@@ -17,6 +17,7 @@ std::vector<std::string> needs_in_words(const fusion::Description& description) 
   std::vector<std::string> out;
   if (n.reference_throughout) out.emplace_back("the reference of the run itself");
   if (n.reference) out.emplace_back("a reference in a learning window");
+  if (n.reference_helps) out.emplace_back("nothing; a reference in a learning window helps");
   if (n.learning_samples > 0)
     out.push_back(fmt::format("at least {} learning instants", n.learning_samples));
   if (n.noise_levels) out.emplace_back("noise levels");

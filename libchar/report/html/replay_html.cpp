@@ -252,7 +252,8 @@ std::string faults_figure(const ReplayView& view) {
                       "",
                       "Broad grey bars: faults as the scene tells them, with the delay until they "
                       "were found. Narrow bars: the sensor was out, and which finding put it "
-                      "there; hollow ones: re-weighted for its noise, still in use."},
+                      "there; hollow ones: re-weighted for its noise, still in use. Row leads: a "
+                      "network leads instead of the baseline, and why it stopped."},
                      view.title) +
          "</div>\n" + detection_figure(view);
 }

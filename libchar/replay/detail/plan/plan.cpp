@@ -354,7 +354,8 @@ Scene taught(const Scene& scene, const ReplayOptions& options) {
   const bool learns =
       asked.empty() || std::any_of(asked.begin(), asked.end(), [](const SceneAlgorithm& a) {
         const fusion::Entry* entry = fusion::find_algorithm(a.name);
-        return entry != nullptr && entry->description->needs.reference;
+        return entry != nullptr && (entry->description->needs.reference ||
+                                    entry->description->needs.reference_helps);
       });
   const bool said = scene.learning || scene.evaluation || options.learning || options.evaluation ||
                     scene.align || scene.fault_free_s || !scene.faults.empty() ||
@@ -389,7 +390,11 @@ ReplayPlan make_plan(const Scene& scene,
   const fusion::Array live = subset(plan.array, plan.live);
   plan.algorithms = choose(scene, options);
   for (PlannedAlgorithm& algorithm : plan.algorithms)
-    if (algorithm.runs()) algorithm.why = fusion::why_not(*algorithm.entry->description, live);
+    if (algorithm.runs()) {
+      const fusion::Description& description = *algorithm.entry->description;
+      algorithm.why = fusion::why_not(description, live);
+      algorithm.helped = description.needs.reference_helps && live.learning_samples > 0;
+    }
   if (instants.info().has_reference) plan.optimum = optimum(live);
   const auto any = [&](auto&& wanted) {
     return std::any_of(plan.algorithms.begin(), plan.algorithms.end(), [&](const auto& a) {

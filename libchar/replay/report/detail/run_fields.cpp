@@ -234,6 +234,15 @@ void read_options_used(const MapReader& at, std::string_view key, ReplayReport::
 const Fields<ReplayReport::Algorithm>& ReplayReport::Algorithm::fields() {
   using T = ReplayReport::Algorithm;
   static const auto kWatches = when<[](const T& a) { return a.watches_faults; }>;
+  static const auto kHandsOver = when<[](const T& a) { return !a.leads.empty(); }>;
+  static const Fields<LeadStretch> kLeadFields = always(Fields<LeadStretch>{
+      field<&LeadStretch::lead>("lead", {.meaning = "network, retrained, past"}),
+      field<&LeadStretch::from_s>("from_s"),
+      field<&LeadStretch::to_s>("to_s"),
+      field<&LeadStretch::ended>("ended",
+                                 {.meaning = "why: missing, outside, apart, inconsistent, no_gain; "
+                                             "right: another network led"}),
+  });
   static const Fields<T> description = always(Fields<T>{
       field<&T::title>("title"),
       field<&T::source>("source"),
@@ -270,6 +279,8 @@ const Fields<ReplayReport::Algorithm>& ReplayReport::Algorithm::fields() {
       list_of<&T::found>("faults", ReplayReport::Fault::found_fields()),
       field<&T::faults_not_kept>("faults_not_kept"),
       field<&T::watches_faults>("watches_faults"),
+      list_of<&T::leads>("leads", kLeadFields, {.known = kHandsOver}),
+      field<&T::hand_overs>("hand_overs", {.known = kHandsOver}),
       list_of<&T::answers>("answers", reported_answer_fields(), {.known = kWatches}),
       field<&T::out_share>("out_share", {.known = kWatches}),
       field<&T::weight_distance>("weight_distance"),
