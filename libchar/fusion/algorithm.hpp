@@ -45,7 +45,6 @@
 #include "libchar/fusion/array.hpp"
 #include "libchar/fusion/description.hpp"
 #include "libchar/fusion/fault_log.hpp"
-#include "libchar/fusion/hand_over.hpp"
 #include "libchar/fusion/learnt.hpp"
 #include "libchar/fusion/options.hpp"
 

@@ -37,10 +37,10 @@ std::vector<FoundFault> found_faults(const fusion::FaultLog& log,
   return out;
 }
 
-std::vector<LeadStretch> lead_stretches(const fusion::HandOverLog& log,
-                                        double start_s,
-                                        double rate_hz) {
-  std::vector<LeadStretch> out;
+std::vector<detail::FaultsFound::Lead> detail::lead_stretches(const fusion::HandOverLog& log,
+                                                              double start_s,
+                                                              double rate_hz) {
+  std::vector<FaultsFound::Lead> out;
   bool open = false;
   for (const fusion::HandOver& event : log.events()) {
     const double time_s = start_s + static_cast<double>(event.sample) / rate_hz;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "libchar/fusion/fault_log.hpp"
-#include "libchar/fusion/hand_over.hpp"
 #include "libchar/simulate/fault.hpp"
 
 namespace libchar {
@@ -19,14 +18,6 @@ struct FoundFault {
   std::string kind;  ///< the rule that raised it
   double from_s = 0;
   std::optional<double> to_s;  ///< none: out until the end
-};
-
-/// A stretch during which another estimator than the baseline led.
-struct LeadStretch {
-  std::string lead;  ///< fusion::Lead
-  double from_s = 0;
-  std::optional<double> to_s;  ///< none: until the end
-  std::string ended;           ///< why it ended, fusion::HandOverReason; empty: at the end of the run
 };
 
 /// How an algorithm dealt with one of the faults that the scene knows.
@@ -42,20 +33,32 @@ std::vector<FoundFault> found_faults(const fusion::FaultLog& log,
                                      double start_s,
                                      double rate_hz);
 
+namespace detail {
+
 /// What an algorithm did about sensors that fail, and who led.
 struct FaultsFound {
+  /// A stretch during which another estimator than the baseline led.
+  struct Lead {
+    std::string lead;  ///< fusion::Lead
+    double from_s = 0;
+    std::optional<double> to_s;  ///< none: until the end
+    std::string ended;  ///< why it ended, fusion::HandOverReason; empty: at the end of the run
+  };
+
   bool watches_faults = false;  ///< it takes sensors out; `faults` and `answers` mean something
   std::vector<FoundFault> faults;
   std::uint64_t faults_not_kept = 0;
   std::vector<FaultAnswer> answers;
-  std::vector<LeadStretch> leads;  ///< of an algorithm with several estimators
-  std::uint64_t hand_overs = 0;    ///< all of them
+  std::vector<Lead> leads;       ///< of an algorithm with several estimators
+  std::uint64_t hand_overs = 0;  ///< all of them
 };
 
 /// The stretches of a log of hand-overs.
-std::vector<LeadStretch> lead_stretches(const fusion::HandOverLog& log,
-                                        double start_s,
-                                        double rate_hz);
+std::vector<FaultsFound::Lead> lead_stretches(const fusion::HandOverLog& log,
+                                              double start_s,
+                                              double rate_hz);
+
+}  // namespace detail
 
 /// One for each known fault that lies within [start_s, end_s).
 std::vector<FaultAnswer> answers_to(const std::vector<SensorFault>& known,

@@ -20,6 +20,7 @@
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
+#include "libchar/replay/device_source.hpp"
 
 namespace libchar {
 namespace {
@@ -45,25 +46,6 @@ std::vector<Channel> channels_of(const std::string& log, ReadOptions reading, Pr
   return head.channels;
 }
 
-const LearntAlgorithm& algorithm_to_apply(const LearntFusion& learnt, const FuseOptions& options) {
-  const std::string& label = options.algorithm.empty() ? learnt.recommended : options.algorithm;
-  if (label.empty())
-    throw usage_error("E0932", learnt.file)
-        .says("the replay recommended no algorithm")
-        .hint("choose one with `algorithm`: " + first_names(learnt.labels()));
-  const LearntAlgorithm* found = learnt.find(label);
-  if (found == nullptr) {
-    const auto near = nearest(label, learnt.labels());
-    throw usage_error("E0932", learnt.file)
-        .says("the replay ran no algorithm of this name")
-        .got(label)
-        .hint(did_you_mean(near, "it ran " + first_names(learnt.labels())));
-  }
-  if (!found->refused.empty())
-    throw usage_error("E0933", learnt.file).says(found->refused).got(label);
-  return *found;
-}
-
 class Fusing {
  public:
   Fusing(const std::string& log,
@@ -74,7 +56,7 @@ class Fusing {
         learnt_(learnt),
         options_(options),
         progress_(progress),
-        algorithm_(algorithm_to_apply(learnt, options)) {
+        algorithm_(detail::algorithm_to_apply(learnt, options.algorithm)) {
     if (learnt.average_s)
       throw input_error("E0934", learnt.file)
           .says(

@@ -144,7 +144,7 @@ struct BlindScore {
       0;  ///< of leave_one_out_rms squared, that is in the sensors' mean differences from the others
 };
 
-struct AlgorithmResult : FaultsFound {
+struct AlgorithmResult : detail::FaultsFound {
   std::string label;  ///< the name, with its options when one algorithm runs twice
   const fusion::Description* description = nullptr;
   fusion::Settings settings = fusion::Settings();

@@ -132,7 +132,7 @@ def replay(program, made, n, reference):
         np.save(log, made)
         learning = ["--learning", "0..120" if reference else "none", "--evaluation", "120..240"]
         command = [program, "replay", str(log), "--sensors", ",".join("s%d" % (i + 1) for i in range(n)),
-                   "--reference", "truth", "--algorithms", "minque,neural-simplex", "-o", str(pathlib.Path(folder) / "r"),
+                   "--reference", "truth", "--algorithms", "minque,neural-simplex", "-o", folder + "/r",
                    "--json", "--quiet", "--no-allan"] + learning
         run = subprocess.run(command, capture_output=True, text=True)
         if "E0905" in run.stderr:

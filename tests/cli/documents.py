@@ -53,6 +53,7 @@ RUNS = [
     ["replay", "--list"], ["explain", "stuck", "E0304"],
     ["replay", "array.csv", "--sensors", "gyro*", "--write-scene", "written.scene.yaml"],
     ["fuse", "array.csv", "--with", "replay", "-o", "fused.csv"],
+    ["model", "replay", "--to", "c", "--algorithm", "minque", "--dtype", "f32"],
     ["compare", "report", "judged"], ["compare", "replay", "replay"], ["compare", "pooled", "pooled"],
     ["convert", IMU, "-o", "imu.npy"], ["convert", IMU, "-o", "imu.f64"],
     ["verify", "report"], ["verify", "report", "--rerun", "again"],

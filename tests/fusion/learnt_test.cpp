@@ -81,7 +81,8 @@ TEST_CASE("learnt: taken in by another one, every algorithm estimates the same b
     const TaughtLog data = taught_log(tilt);
     for (const Entry& entry : algorithms()) {
       const Needs& needs = entry.description->needs;
-      if (!(needs.reference || needs.reference_helps) || entry.description->needs.tilt != tilt) continue;
+      if (!(needs.reference || needs.reference_helps) || entry.description->needs.tilt != tilt)
+        continue;
       if (!why_not(*entry.description, data.array).empty()) continue;
       INFO(entry.description->name);
       ++learning;

@@ -56,7 +56,8 @@ LearnedScene scene_of(Eigen::Index n) {
 std::unique_ptr<Runner> trained(const Entry& entry, const LearnedScene& scene) {
   auto runner = entry.make(scene.array, Settings(entry.options));
   const Needs& needs = entry.description->needs;
-  if (needs.reference || needs.reference_helps) runner->learn(scene.learning_y, scene.learning_truth);
+  if (needs.reference || needs.reference_helps)
+    runner->learn(scene.learning_y, scene.learning_truth);
   if (entry.description->needs.reference_throughout) runner->learn(scene.y, scene.truth);
   runner->finish_learning();
   return runner;

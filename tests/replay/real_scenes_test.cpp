@@ -145,3 +145,26 @@ TEST_CASE("tilt by hand", "[real]") {
   CHECK(of(second, "tilt-accelerometer").rmse == Approx(2.50).epsilon(0.05));
   CHECK(of(second, "tilt-complementary").rmse < 0.99);
 }
+
+TEST_CASE(
+    "the neural simplex on real arrays: never worse than its baseline, its hand-overs are told",
+    "[real]") {
+  NEEDS_SHARED("data/INDEX.md");
+  for (const char* scene :
+       {"mimu-gyro-y.yaml", "dot-gyro-z-aligned.yaml", "air-temp.yaml", "air-o3.yaml"}) {
+    INFO(scene);
+    const ReplayResult result = run(scene, {"minque", "neural-simplex"});
+    const AlgorithmResult &baseline = of(result, "minque"), &simplex = of(result, "neural-simplex");
+    CHECK(simplex.rmse <= 1.01 * baseline.rmse);
+    CHECK(simplex.availability == baseline.availability);
+    std::uint64_t ended = 0;
+    for (const auto& stretch : simplex.leads) {
+      CHECK(stretch.from_s >= 0);
+      ended += stretch.to_s ? 1 : 0;
+      if (stretch.to_s) CHECK(*stretch.to_s > stretch.from_s);
+    }
+    // Each stretch begins with a hand-over and ends with one, unless another network leads on.
+    CHECK(simplex.hand_overs <= simplex.leads.size() + ended);
+    CHECK(simplex.hand_overs >= simplex.leads.size());
+  }
+}

@@ -82,7 +82,7 @@ TEST_CASE("teaching: the first half teaches, and each term is taken only where i
                      all = run_taught({.delay = 0.6}, explained + "align: {learn: learning}\n"),
                      asked = run_taught({.delay = 0.6},
                                         explained + "align: {learn: learning, choose: true}\n");
-  CHECK(best_rmse(late) < 0.7 * best_rmse(learnt));
+  CHECK(best_rmse(late) < 0.8 * best_rmse(learnt));  // the simplex makes up for a part of the delay
   CHECK(best_rmse(late) < 1.01 * best_rmse(all));
   CHECK(best_rmse(late) == best_rmse(asked));
   CHECK(kept(run_taught({.bias = 0.5})) == std::vector<std::string>{"bias"});

@@ -1,5 +1,5 @@
 // sensorchar model FILE…: what a sensor model says, and the same numbers for the programs that
-// consume them (--to NAME).
+// consume them (--to NAME). --to c takes the result of a replay: its method as one C99 file.
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include "libchar/export/exports.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/model/model_file.hpp"
+#include "libchar/replay/device_source.hpp"
 #include "libchar/report/text/model_text.hpp"
 #include "verb.hpp"
 
@@ -26,6 +27,7 @@ struct ModelVerb {
   std::vector<std::string> files, places;
   std::string target, output;
   ExportOptions options;
+  std::string algorithm, dtype = "f64";  // of --to c
   bool list = false, force = false, json = false;
 };
 
@@ -66,6 +68,15 @@ Json head_of(const Session& session, const char* format, const std::vector<LogIn
   return document_head(session, format, inputs);
 }
 
+/// The only target that is not made of sensor models.
+constexpr const char* kDevice = "c";
+constexpr const char* kDeviceTitle = "C99: the method of a replay";
+constexpr const char* kDeviceConvention = "one file without heap; float or double (--dtype)";
+
+bool to_device(const ModelVerb& verb) {
+  return verb.target == kDevice;
+}
+
 void print_targets(const Session& session, bool json) {
   if (json) {
     Json document = head_of(session, "model-targets", {});
@@ -76,6 +87,11 @@ void print_targets(const Session& session, bool json) {
                                      {"convention", t.convention},
                                      {"file", t.file},
                                      {"needs", needs_text(t.needs)}});
+    document["targets"].push_back({{"name", kDevice},
+                                   {"title", kDeviceTitle},
+                                   {"convention", kDeviceConvention},
+                                   {"file", "fusion.c"},
+                                   {"needs", "fusion.yaml"}});
     return print(dump_json(document));
   }
   std::string text;
@@ -87,6 +103,11 @@ void print_targets(const Session& session, bool json) {
                         needs_text(t.needs),
                         "",
                         t.convention);
+  text += fmt::format("{:<13} {} (fusion.c; needs fusion.yaml)\n{:<13} {}\n",
+                      kDevice,
+                      kDeviceTitle,
+                      "",
+                      kDeviceConvention);
   print(text);
 }
 
@@ -111,6 +132,32 @@ void run_export(Session& session, const ModelVerb& verb) {
   document["notes"] = made.notes;
   document["text"] = made.text;
   if (!verb.output.empty()) deliver(verb, made.text);
+  print(dump_json(document));
+}
+
+void run_device(Session& session, const ModelVerb& verb) {
+  if (verb.files.size() != 1)
+    throw usage_error("E0205", "model")
+        .says("--to c takes one FILE")
+        .hint("the folder of a replay, or the fusion.yaml in it");
+  const LearntFusion learnt = read_fusion_file(verb.files[0]);
+  const detail::DeviceSource made =
+      detail::device_source(learnt, {verb.algorithm, verb.dtype == "f32"});
+  if (!verb.output.empty() || !verb.json) deliver(verb, made.text);
+  if (!verb.json) {
+    for (const std::string& note : made.notes) session.terminal.note("note: " + printable(note));
+    return;
+  }
+  Json document = head_of(session, "model-export", {document_info(learnt.file)});
+  document["target"] = kDevice;
+  document["convention"] = kDeviceConvention;
+  document["file"] = verb.output.empty() ? std::string("fusion.c") : printable(verb.output);
+  document["notes"] = made.notes;
+  document["text"] = made.text;
+  document["algorithm"] = made.algorithm;
+  document["state_bytes"] = made.state_bytes;
+  document["operations"] = made.operations;
+  document["estimated_cycles"] = {{"cortex-m4f", made.cycles_m4f}, {"cortex-m33", made.cycles_m33}};
   print(dump_json(document));
 }
 
@@ -140,6 +187,7 @@ void run_model(Session& session, ModelVerb& verb) {
   foresee_output(verb.output, verb.files, verb.force);
   verb.options.axis = overrides(verb.places);
   if (verb.target.empty()) return run_summary(session, verb);
+  if (to_device(verb)) return run_device(session, verb);
   run_export(session, verb);
 }
 
@@ -198,16 +246,20 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
 std::vector<std::string> target_words() {
   std::vector<std::string> words;
   for (const ExportTarget& target : export_targets()) words.emplace_back(target.name);
+  words.emplace_back(kDevice);
   return words;
 }
 
 /// What a target cannot write has no effect on it.
 void add_only(VerbOptions& options, const ModelVerb& verb) {
-  options.only(
-      "with --to", [&verb] { return !verb.target.empty(); }, {"--axes", "--axis", "--anyway"});
+  options.only("with --to",
+               [&verb] { return !verb.target.empty() && !to_device(verb); },
+               {"--axes", "--axis", "--anyway"});
+  options.only("with --to c", [&verb] { return to_device(verb); }, {"--algorithm", "--dtype"});
   const auto takes = [&](bool ExportTakes::*what, const std::vector<std::string>& flags) {
     const auto taken = [&verb, what] {
-      return !verb.target.empty() && find_export_target(verb.target).takes.*what;
+      return !verb.target.empty() && !to_device(verb) &&
+             find_export_target(verb.target).takes.*what;
     };
     options.only("with --to " + targets_that_take(what), taken, flags);
   };
@@ -222,10 +274,17 @@ void add_only(VerbOptions& options, const ModelVerb& verb) {
 
 std::function<void()> model_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ModelVerb>();
-  options.add_texts("FILE",
-                    verb->files,
-                    "model files (.sensor.yaml, .json), or what characterize wrote (its folder, "
-                    "report.json); the axes of one device together");
+  options.add_texts(
+      "FILE",
+      verb->files,
+      "model files (.sensor.yaml, .json), or what characterize wrote (its folder, "
+      "report.json); the axes of one device together. With --to c the folder of a replay or "
+      "its fusion.yaml");
+  options
+      .add_text(
+          "--algorithm", verb->algorithm, "c: method of the replay (default: what it recommends)")
+      .value_name("NAME");
+  options.add_choice("--dtype", verb->dtype, {"f64", "f32"}, "c: double or float (default: f64)");
   options.add_text("--to", verb->target, "target; --list names them")
       .value_name("NAME")
       .known_words(target_words());
@@ -247,7 +306,9 @@ VerbEntry verb_model() {
           model_options,
           {{"what a model says", "sensorchar model report/gyro_z.sensor.yaml"},
            {"the numbers of an IMU as Kalibr wants them, its z axes for all",
-            "sensorchar model report --to kalibr --axes z -o imu.yaml"}}};
+            "sensorchar model report --to kalibr --axes z -o imu.yaml"},
+           {"the method that a replay recommends, for a microcontroller",
+            "sensorchar model array-replay --to c --dtype f32 -o fusion.c"}}};
 }
 
 }  // namespace sensorchar

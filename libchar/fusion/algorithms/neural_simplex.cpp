@@ -24,25 +24,24 @@ TanhNetwork shape_of(std::size_t n, const Settings& settings) {
 NeuralSimplex::NeuralSimplex(const Array& array, const Settings& settings)
     : n_(static_cast<std::size_t>(array.channels)),
       shape_(shape_of(n_, settings)),
-      lags_(static_cast<std::size_t>(settings["past"])),
-      most_(static_cast<std::size_t>(settings["most_samples"])),
-      starts_(static_cast<std::size_t>(settings["starts"])),
-      seed_(static_cast<std::uint64_t>(settings["seed"])),
-      retraining_(settings["retraining"] == 1),
-      expected_(array.learning_samples),
+      plan_{static_cast<std::size_t>(settings["past"]),
+            static_cast<std::size_t>(settings["most_samples"]),
+            static_cast<std::size_t>(settings["starts"]),
+            static_cast<std::uint64_t>(settings["seed"]),
+            settings["retraining"] == 1},
       baseline_(array, Settings(Minque::options)),
-      past_(n_, lags_),
-      network_(n_, lags_, shape_),
-      retrained_(n_, lags_, shape_),
-      own_past_(seed_),
+      past_(n_, plan_.lags),
+      network_(n_, plan_.lags, shape_),
+      retrained_(n_, plan_.lags, shape_),
+      own_past_(plan_.seed),
       left_out_(n_),
       tried_(n_),
       set_(n_),
       absent_(n_),
       y_(n_),
       variance_(n_) {
-  if (expected_ <= 0) return;
-  learning_.rows.emplace(n_, lags_, most_, expected_, seed_);
+  if (array.learning_samples <= 0) return;
+  learning_.rows.emplace(n_, plan_.lags, plan_.most_rows, array.learning_samples, plan_.seed);
   Array window = array;
   window.fault_free_samples = 0;
   learning_.baseline.emplace(window, Settings(Minque::options));
@@ -59,7 +58,8 @@ void NeuralSimplex::shift(const Sample& y) {
   if (!origin_)
     for (const double sample : y)
       if (usable(sample) && !origin_) origin_ = sample;
-  for (std::size_t i = 0; i < n_; ++i) y_[i] = y[static_cast<Eigen::Index>(i)] - origin_.value_or(0);
+  for (std::size_t i = 0; i < n_; ++i)
+    y_[i] = y[static_cast<Eigen::Index>(i)] - origin_.value_or(0);
 }
 
 void NeuralSimplex::note_left_out(const Minque& baseline) {
@@ -92,10 +92,10 @@ void NeuralSimplex::finish_learning() {
   rows.put_in_order();
   past_.forget();
   if (rows.training() >= 2 * shape_.size() && rows.held_out() >= 4 * Teaching::kBlocks) {
-    learning_.teaching.emplace(rows, lags_, shape_, seed_);
+    learning_.teaching.emplace(rows, plan_.lags, shape_, plan_.seed);
     for (std::size_t i = 0; i < n_; ++i) variance_[i] = learning_.baseline->noise_variance(i);
     learning_.teaching->begin(std::vector<char>(n_, 1), variance_.data());
-    learning_.teaching->finish_at_once(starts_);
+    learning_.teaching->finish_at_once(plan_.starts);
     network_ = learning_.teaching->made();
     learning_.taught = true;
   }
@@ -138,7 +138,7 @@ Lead NeuralSimplex::choose(const Estimate& baseline, Estimate& out) {
   };
   const bool network = network_.right && network_.judge(past_, y_.data(), view);
   const bool retrained = retrained_.right && retrained_.judge(past_, y_.data(), view);
-  const bool own = retraining_ && judge_past(view.x, view.variance);
+  const bool own = plan_.retraining && judge_past(view.x, view.variance);
   watch_network(network || retrained);
   if (network) return give(network_.x(), network_.variance(), Lead::network);
   if (retrained) return give(retrained_.x(), retrained_.variance(), Lead::retrained);
@@ -150,7 +150,7 @@ void NeuralSimplex::watch_network(bool good) {
   for (std::size_t i = 0; i < n_; ++i)
     absent_[i] = usable(y_[i]) ? 0 : std::min(absent_[i] + 1, kAway);
   run_.bad = good ? 0 : std::min(run_.bad + 1, kPatience);
-  if (learning_.teaching && retraining_) teach();
+  if (learning_.teaching && plan_.retraining) teach();
 }
 
 /// Those that are here and not left out; where they disagree, without the one that is furthest off.
@@ -194,10 +194,10 @@ Estimate NeuralSimplex::step(const Sample& y) {
   if (lead != run_.lead) {
     HandOverReason reason = HandOverReason::right;
     if (lead == Lead::baseline || static_cast<int>(lead) > static_cast<int>(run_.lead))
-      reason = run_.lead == Lead::past          ? own_past_.reason()
-               : run_.lead == Lead::retrained   ? retrained_.reason()
-               : run_.lead == Lead::network     ? network_.reason()
-                                                : HandOverReason::right;
+      reason = run_.lead == Lead::past        ? own_past_.reason()
+               : run_.lead == Lead::retrained ? retrained_.reason()
+               : run_.lead == Lead::network   ? network_.reason()
+                                              : HandOverReason::right;
     log_.note({run_.now, lead, reason});
     run_.lead = lead;
   }
@@ -213,16 +213,17 @@ void NeuralSimplex::remarks(Findings& warnings) const {
     warnings.add("network_led",
                  "neural-simplex: a network led in " +
                      brief_text(100 * static_cast<double>(led) / static_cast<double>(run_.now), 2) +
-                     " % of the run, " +
-                     std::to_string(log_.events().size() + log_.dropped()) + " hand-overs");
+                     " % of the run, " + std::to_string(log_.events().size() + log_.dropped()) +
+                     " hand-overs");
   if (learning_.taught && !network_.right && learning_.teaching)
-    warnings.add("network_not_better",
-                 "neural-simplex gives its baseline: on what it had not learnt, its network's error "
-                 "was " +
-                     brief_text(std::sqrt(learning_.teaching->network_square() /
-                                          learning_.teaching->baseline_square()),
-                                3) +
-                     " times that of the baseline");
+    warnings.add(
+        "network_not_better",
+        "neural-simplex gives its baseline: on what it had not learnt, its network's error "
+        "was " +
+            brief_text(std::sqrt(learning_.teaching->network_square() /
+                                 learning_.teaching->baseline_square()),
+                       3) +
+            " times that of the baseline");
 }
 
 }  // namespace libchar::fusion

@@ -47,7 +47,8 @@ struct NeuralSimplex {
              1e6,
              "kept of the learning window, a quarter of them to judge what was learnt",
              true},
-      Option{"most_weights", "", 200, 10, 1e4, "of the network; wide arrays get fewer neurons", true},
+      Option{
+          "most_weights", "", 200, 10, 1e4, "of the network; wide arrays get fewer neurons", true},
       Option{"starts", "", 2, 1, 100, "trainings from different random weights", true},
       Option{"seed", "", 1, 0, 9007199254740992.0, "of the random weights and choices", true},
       Option{"retraining",
@@ -55,7 +56,8 @@ struct NeuralSimplex {
              1,
              0,
              1,
-             "1: learns again in the run, without sensors that fail, and from its own past; 0: neither",
+             "1: learns again in the run, without sensors that fail, and from its own past; 0: "
+             "neither",
              true}};
 
   NeuralSimplex(const Array& array, const Settings& settings);
@@ -83,10 +85,11 @@ struct NeuralSimplex {
 
   std::size_t n_;
   TanhNetwork shape_;
-  std::size_t lags_, most_, starts_;
-  std::uint64_t seed_;
-  bool retraining_;
-  std::int64_t expected_;
+  struct {
+    std::size_t lags, most_rows, starts;
+    std::uint64_t seed;
+    bool retraining;
+  } plan_;
   Minque baseline_;
   struct {
     std::optional<Minque> baseline;  // of the learning window
@@ -102,7 +105,7 @@ struct NeuralSimplex {
   struct {
     Lead lead = Lead::baseline;
     std::int64_t now = 0;
-    int bad = 0;          // instants in a row at which no network of the reference was right
+    int bad = 0;  // instants in a row at which no network of the reference was right
     std::int64_t led[4] = {};
   } run_;
   // Who is absent, and without whom it was tried to learn again.

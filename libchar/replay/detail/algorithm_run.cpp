@@ -376,7 +376,7 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
     out.faults_not_kept = log->dropped();
   }
   if (const fusion::HandOverLog* log = runner_->hand_overs()) {
-    out.leads = lead_stretches(*log, frame_->start_s, frame_->rate_hz);
+    out.leads = detail::lead_stretches(*log, frame_->start_s, frame_->rate_hz);
     out.hand_overs = log->events().size() + log->dropped();
   }
   runner_->remarks(out.remarks);

@@ -164,8 +164,8 @@ ReplayFigures figures_of(const ReplayResult& r) {
       any([](const auto& a) { return a.rmse > 0 && a.peak_bytes.value_or(0) > 0; });
   out.weights = any([](const auto& a) { return a.weights.size() == 1; });
   out.variances = any([](const auto& a) { return !a.variances.empty(); });
-  out.faults = !r.faults.empty() ||
-               any([](const auto& a) { return !a.faults.empty() || !a.leads.empty(); });
+  out.faults =
+      !r.faults.empty() || any([](const auto& a) { return !a.faults.empty() || !a.leads.empty(); });
   out.detection = std::any_of(r.detection.begin(), r.detection.end(), [](const DetectionAt& at) {
     return std::any_of(at.answers.begin(), at.answers.end(), [](const auto& one) {
       return one.found_s.has_value();

@@ -29,8 +29,8 @@ std::vector<std::string> needs_in_words(const fusion::Description& description) 
   if (n.max_channels > 0) out.push_back(fmt::format("at most {} sensors", n.max_channels));
   if (n.more_than_inputs > 0)
     out.push_back(n.more_than_inputs == 1
-                      ? std::string("more than one sensor an input")
-                      : fmt::format("more than {} sensors an input", n.more_than_inputs));
+                      ? std::string("more than one sensor per input")
+                      : fmt::format("more than {} sensors per input", n.more_than_inputs));
   if (!n.observation_matrix && !n.tilt) out.emplace_back("one input, seen alike by all");
   if (!n.accepts_missing) out.emplace_back("no missing samples");
   return out;

@@ -99,6 +99,12 @@ def periodic(made):
     return {"ref": x} | {name: [v + w for v, w in zip(x, noise(N_ROWS, seed=i))] for i, name in enumerate("abc")}
 
 
+def without_past(made):
+    """A white input, whose past tells nothing."""
+    x = noise(N_ROWS, 3, seed=70)
+    return {"ref": x} | {name: [v + w for v, w in zip(x, noise(N_ROWS, seed=i))] for i, name in enumerate("abc")}
+
+
 def combined(made):
     """c is the sum of a and b as they are written."""
     for name in "ab":
@@ -213,6 +219,8 @@ INPUTS = {
                                        algorithms="least-squares")),
     "perceptron_fewer_neurons": asked(replay(options=("--learning", "0..30", "--set", "perceptron.most_weights=20"),
                                              algorithms="perceptron")),
+    "network_led": asked(replay(options=("--learning", "0..30"), algorithms="neural-simplex")),
+    "network_not_better": asked(replay(without_past, ("--learning", "0..30"), algorithms="neural-simplex")),
     "not_calibrated": asked(replay(lambda made: {k: noise(N_ROWS, seed=i) for i, k in enumerate(made)},
                                    algorithms="blind-gls")),
     "noise_bias": asked(replay(sensors="a,b", algorithms="blind-calibration", reference="")),

@@ -9,9 +9,11 @@
 namespace libchar::fusion {
 namespace {
 
-constexpr std::size_t kRowsPerSlice = 4;
+constexpr std::size_t kRowsPerSlice = 32;  // one pass forward each
+constexpr std::size_t kProductsPerSlice =
+    65536;  // where a row has as many as there are pairs of parameters
 constexpr std::size_t kColumnsPerSlice = 4;
-constexpr int kMostIterations = 40, kPatience = 4;
+constexpr int kMostIterations = 25, kPatience = 4;
 constexpr double kRidge = 1e-9;            // of the diagonal of the affine part
 constexpr double kLeastDecrease = 1e-5;    // of the sum of squares, relative
 constexpr double kLeastShare = 1e-3;       // of a promised decrease, for a step to be taken
@@ -136,7 +138,11 @@ bool NetworkFit::advance() {
     if (factor_columns()) take_step();
     return phase_ == Phase::idle;
   }
-  const std::size_t end = std::min(phase_rows(), at_ + kRowsPerSlice);
+  std::size_t rows = kRowsPerSlice;
+  if (phase_ == Phase::slopes)
+    rows = std::clamp<std::size_t>(
+        2 * kProductsPerSlice / (lm_.p.size() * lm_.p.size()), 1, kRowsPerSlice);
+  const std::size_t end = std::min(phase_rows(), at_ + rows);
   for (; at_ < end; ++at_) work(at_);
   if (at_ >= phase_rows()) end_of_phase();
   return phase_ == Phase::idle;
@@ -213,11 +219,9 @@ void NetworkFit::add_affine(std::size_t k) {
 }
 
 bool NetworkFit::solve_affine() {
-  if (!solve_in_place(
-          affine_matrix_.data(), affine_side_.data(), affine_side_.size(), kRidge) ||
-      !std::all_of(affine_side_.begin(), affine_side_.end(), [](double v) {
-        return std::isfinite(v);
-      }))
+  if (!solve_in_place(affine_matrix_.data(), affine_side_.data(), affine_side_.size(), kRidge) ||
+      !std::all_of(
+          affine_side_.begin(), affine_side_.end(), [](double v) { return std::isfinite(v); }))
     return false;
   out_.affine = affine_side_;
   return true;
@@ -269,8 +273,7 @@ void NetworkFit::start_parameters() {
 void NetworkFit::add_slopes(std::size_t k) {
   const std::size_t size = lm_.p.size();
   const double* const z = row(k);
-  const double e =
-      out_.network.output(lm_.p.data(), z, lm_.row.data()) - z[out_.network.inputs];
+  const double e = out_.network.output(lm_.p.data(), z, lm_.row.data()) - z[out_.network.inputs];
   for (std::size_t i = 0; i < size; ++i) {
     const double r = lm_.row[i];
     lm_.slope[i] += r * e;

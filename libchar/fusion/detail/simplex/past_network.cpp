@@ -7,11 +7,11 @@ namespace libchar::fusion {
 namespace {
 
 constexpr std::size_t kPastHeldOut = PastNetwork::kRing / 4;
-constexpr double kSlow = 2048, kQuick = 32;  // instants of memory
-constexpr double kSettled = 1024;            // instants before it may lead
-constexpr double kPastErrors = 3;                // standard errors
+constexpr double kSlow = 2048, kQuick = 32;         // instants of memory
+constexpr double kSettled = 1024;                   // instants before it may lead
+constexpr double kPastErrors = 3;                   // standard errors
 constexpr double kPays = 0.04, kPaysNoMore = 0.02;  // of the mean square error
-constexpr double kPastSigmas = 4;                // of an innovation
+constexpr double kPastSigmas = 4;                   // of an innovation
 constexpr int kPastCalm = 16;
 
 }  // namespace
@@ -33,8 +33,7 @@ PastNetwork::PastNetwork(std::uint64_t seed)
 }
 
 void PastNetwork::inputs_of(const Series& series, double* z) {
-  for (std::size_t j = 0; j < kInputs; ++j)
-    z[j] = series.at(0) - series.at(std::size_t{1} << j);
+  for (std::size_t j = 0; j < kInputs; ++j) z[j] = series.at(0) - series.at(std::size_t{1} << j);
 }
 
 double PastNetwork::Rows::row(std::size_t k, double* input) const {

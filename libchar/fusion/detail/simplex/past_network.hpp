@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "libchar/fusion/detail/simplex/network_fit.hpp"
-#include "libchar/fusion/hand_over.hpp"
+#include "libchar/fusion/fault_log.hpp"
 
 namespace libchar::fusion {
 

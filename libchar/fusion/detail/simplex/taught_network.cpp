@@ -9,18 +9,19 @@
 namespace libchar::fusion {
 namespace {
 
-constexpr std::size_t kTerms = 4;        // of a cubic
-constexpr double kParityMemory = 128;    // instants
-constexpr double kMargin = 0.05;         // of the range of an input, on either side
-constexpr double kSigmas = 4;            // of the baseline
+constexpr std::size_t kTerms = 4;             // of a cubic
+constexpr double kParityMemory = 128;         // instants
+constexpr double kMargin = 0.15;              // of the range of an input, on either side
+constexpr double kLevelMargin = 0.05;         // of that of the level
+constexpr double kSigmas = 4;                 // of the baseline
 constexpr double kApart = 1.2, kDrift = 1.5;  // of the largest that was seen
-constexpr double kChance = 4;            // standard errors of a mean of white residuals
-constexpr double kCalmAgain = 0.7;       // of its limit
-constexpr int kCalm = 32;                // good instants before the network leads again
-constexpr double kLeastGain = 0.06;      // of the mean square error
-constexpr double kErrors = 2.5;          // standard errors of that gain
-constexpr double kAgeing = 9;            // of the square that the network has aged by since it learnt
-constexpr std::size_t kJudgedPerSlice = 4;
+constexpr double kChance = 4;                 // standard errors of a mean of white residuals
+constexpr double kCalmAgain = 0.7;            // of its limit
+constexpr int kCalm = 32;                     // good instants before the network leads again
+constexpr double kLeastGain = 0.06;           // of the mean square error
+constexpr double kErrors = 2.5;               // standard errors of that gain
+constexpr double kAgeing = 9;  // of the square that the network has aged by since it learnt
+constexpr std::size_t kJudgedPerSlice = 16;
 
 }  // namespace
 
@@ -272,7 +273,8 @@ void Teaching::add_reading(std::size_t k) {
   const double u = (rows_.truth(k) - made_.limits.centre) / made_.limits.unit;
   const double powers[kTerms] = {1, u, u * u, u * u * u};
   for (std::size_t p = 0; p < kTerms; ++p) {
-    for (std::size_t q = 0; q < kTerms; ++q) readings_.power[p * kTerms + q] += powers[p] * powers[q];
+    for (std::size_t q = 0; q < kTerms; ++q)
+      readings_.power[p * kTerms + q] += powers[p] * powers[q];
     for (std::size_t i = 0; i < inverse_.size(); ++i)
       readings_.side[i * kTerms + p] += powers[p] * rows_.past(k)[i];
   }
@@ -284,7 +286,9 @@ void Teaching::solve_readings() {
     std::copy(readings_.power.begin(), readings_.power.end(), matrix);
     double* const side = readings_.side.data() + i * kTerms;
     if (!solve_in_place(matrix, side, kTerms, 1e-9)) std::fill(side, side + kTerms, 0);
-    std::copy(side, side + kTerms, made_.limits.reading.begin() + static_cast<std::ptrdiff_t>(i * kTerms));
+    std::copy(side,
+              side + kTerms,
+              made_.limits.reading.begin() + static_cast<std::ptrdiff_t>(i * kTerms));
     made_.limits.deviation[i] = 1;
   }
 }
@@ -351,7 +355,7 @@ void Teaching::end_of_phase() {
     case Phase::range: {
       NetworkLimits& limits = made_.limits;
       for (std::size_t i = 0; i < limits.low.size(); ++i) {
-        const double margin = kMargin * (limits.high[i] - limits.low[i]);
+        const double margin = (i == 0 ? kLevelMargin : kMargin) * (limits.high[i] - limits.low[i]);
         limits.low[i] -= margin;
         limits.high[i] += margin;
       }
@@ -404,8 +408,7 @@ void Teaching::conclude() {
   for (const double g : gain) square += (g - mean) * (g - mean) / (kBlocks - 1);
   made_.limits.apart = kApart * tail_.apart;
   for (std::size_t i = 0; i < tail_.largest.size(); ++i)
-    made_.limits.drift[i] =
-        kDrift * tail_.largest[i] + kChance / std::sqrt(2 * kParityMemory);
+    made_.limits.drift[i] = kDrift * tail_.largest[i] + kChance / std::sqrt(2 * kParityMemory);
   made_.net.held_out_square = held_.network;
   made_.right = std::isfinite(held_.network) &&
                 held_.network + kAgeing * ageing() < (1 - kLeastGain) * held_.baseline &&

@@ -5,15 +5,16 @@
 //   the mean of s_i = y_i - r_i(x) over the last 128 instants stays within what it was there, for each sensor:
 //   r_i, a cubic, is what sensor i read at the true x, so s are the parity residuals of the network.
 // `Teaching` makes one in slices: fit, then judgement on rows that the fit has not seen, by these rules:
-// mean square error smaller than the baseline's by 6 %, by 2.5 standard errors of the difference over blocks, not
-// larger on the last instants of the learning window; and smaller with nine times what the network would have aged since
-// it learnt, sum a_i^2 m_i^2: m_i the mean of s_i on the held-out rows, a_i what a lasting offset of sensor i does to x.
+// mean square error smaller than the baseline's by 6 %, by 2.5 standard errors of the difference over
+// blocks, not larger on the last instants of the learning window; and smaller with nine times what the
+// network would have aged since it learnt, sum a_i^2 m_i^2: m_i the mean of s_i on the held-out rows, a_i
+// what a lasting offset of sensor i does to x.
 
 #include <vector>
 
 #include "libchar/fusion/detail/simplex/network_fit.hpp"
 #include "libchar/fusion/detail/simplex/taught_rows.hpp"
-#include "libchar/fusion/hand_over.hpp"
+#include "libchar/fusion/fault_log.hpp"
 #include "libchar/fusion/learnt.hpp"
 
 namespace libchar::fusion {
@@ -27,10 +28,10 @@ struct BaselineView {
 struct NetworkLimits {
   std::vector<double> low, high;  ///< of the inputs
   double apart = 0;
-  double centre = 0, unit = 1;     ///< u = (x - centre) / unit
-  std::vector<double> reading;     ///< r_i = sum of four terms u^p, a row a sensor
-  std::vector<double> deviation;   ///< of s_i
-  std::vector<double> drift;       ///< largest mean of s_i / deviation
+  double centre = 0, unit = 1;    ///< u = (x - centre) / unit
+  std::vector<double> reading;    ///< r_i = sum of four terms u^p, a row a sensor
+  std::vector<double> deviation;  ///< of s_i
+  std::vector<double> drift;      ///< largest mean of s_i / deviation
 };
 
 class TaughtNetwork {
@@ -121,7 +122,8 @@ class Teaching {
   } readings_;
   struct {
     double network = 0, baseline = 0, weighted = 0;
-    std::vector<double> gain, gain_weighted;  // of each block: squares of the baseline less those of the network
+    std::vector<double> gain,
+        gain_weighted;  // of each block: squares of the baseline less those of the network
   } held_;
   struct {
     double network = 0, baseline = 0, apart = 0;

@@ -354,8 +354,8 @@ Scene taught(const Scene& scene, const ReplayOptions& options) {
   const bool learns =
       asked.empty() || std::any_of(asked.begin(), asked.end(), [](const SceneAlgorithm& a) {
         const fusion::Entry* entry = fusion::find_algorithm(a.name);
-        return entry != nullptr && (entry->description->needs.reference ||
-                                    entry->description->needs.reference_helps);
+        return entry != nullptr &&
+               (entry->description->needs.reference || entry->description->needs.reference_helps);
       });
   const bool said = scene.learning || scene.evaluation || options.learning || options.evaluation ||
                     scene.align || scene.fault_free_s || !scene.faults.empty() ||

@@ -20,7 +20,7 @@ struct PlannedAlgorithm {
   fusion::Settings settings;
   std::string why;        ///< why it does not run, a sentence; empty: it runs
   bool asked = true;      ///< false: run for `no_skip` alone, shown nowhere
-  bool helped = false;  ///< there is a reference in a learning window, which it does not need
+  bool helped = false;    ///< there is a reference in a learning window, which it does not need
   BlindShare blind = {};  ///< how much of the run its scores without a reference are made of
   bool runs() const { return why.empty(); }
   bool learns_before() const { return entry->description->needs.reference || helped; }

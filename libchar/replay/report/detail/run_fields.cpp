@@ -235,13 +235,14 @@ const Fields<ReplayReport::Algorithm>& ReplayReport::Algorithm::fields() {
   using T = ReplayReport::Algorithm;
   static const auto kWatches = when<[](const T& a) { return a.watches_faults; }>;
   static const auto kHandsOver = when<[](const T& a) { return !a.leads.empty(); }>;
-  static const Fields<LeadStretch> kLeadFields = always(Fields<LeadStretch>{
-      field<&LeadStretch::lead>("lead", {.meaning = "network, retrained, past"}),
-      field<&LeadStretch::from_s>("from_s"),
-      field<&LeadStretch::to_s>("to_s"),
-      field<&LeadStretch::ended>("ended",
-                                 {.meaning = "why: missing, outside, apart, inconsistent, no_gain; "
-                                             "right: another network led"}),
+  using L = T::Lead;
+  static const Fields<L> kLeadFields = always(Fields<L>{
+      field<&L::lead>("lead", {.meaning = "network, retrained, past"}),
+      field<&L::from_s>("from_s"),
+      field<&L::to_s>("to_s"),
+      field<&L::ended>("ended",
+                       {.meaning = "why: missing, outside, apart, inconsistent, no_gain; "
+                                   "right: another network led"}),
   });
   static const Fields<T> description = always(Fields<T>{
       field<&T::title>("title"),
