@@ -209,9 +209,11 @@ class Writer {
            "fusion_real *sd) {\n"
            "  fusion_real samples[N], variance = -1;\n  int i, given;\n"
            "  for (i = 0; i < N; ++i) samples[i] = y[i] * scale_of[i] - offset_of[i];\n" +
-           align +
-           "  given = estimate(s, samples, x, &variance);\n"
-           "  *sd = given && variance >= 0 ? SQRT(variance) : -1;\n  return given;\n}\n";
+           align + "  given = estimate(s, samples, x, &variance);\n" +
+           fmt::format(
+               "  *sd = given && variance >= 0 ? {} * SQRT(variance) : -1;\n  return given;\n}}\n",
+               fusion::c_number(algorithm_.sd_factor.size() == 1 ? algorithm_.sd_factor[0] : 1,
+                                options_.single));
   }
 
   const LearntFusion& learnt_;

@@ -19,6 +19,7 @@
 #include "libchar/replay/detail/align/instants.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
+#include "libchar/replay/detail/plan/reading_meter.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/device_source.hpp"
 
@@ -94,7 +95,9 @@ class Fusing {
   const Eigen::MatrixXd& given(const Eigen::MatrixXd& samples);
   void note_faults(std::int64_t end);
   void fill_flags(const Eigen::MatrixXd& samples, std::size_t first);
+  double stated(Eigen::Index input) const;
   void begin_check();
+  void check_readings();
   void check_noise();
   void tell();
 
@@ -124,8 +127,11 @@ class Fusing {
     std::int64_t done = 0;
   } faults_;
   // Is the noise that of where it was learnt?
-  std::vector<Eigen::Index> checked_;  // rows of the algorithm whose sensors are in the log
-  std::optional<StepNoiseMeter> steps_;
+  struct {
+    std::vector<Eigen::Index> rows;  // of the algorithm, whose sensors are in the log
+    std::optional<StepNoiseMeter> steps;
+    std::optional<detail::ReadingMeter> readings;
+  } check_;
 };
 
 void Fusing::find_entry() {
@@ -449,7 +455,7 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   for (Eigen::Index j = 0; j < inputs; ++j)
     for (std::size_t k = 0; k < rows; ++k) {
       const auto at = static_cast<Eigen::Index>(k);
-      const double x = x_(j, at), sd = std::sqrt(variance_(j, at)) * output_scale_;
+      const double x = x_(j, at), sd = stated(j) * std::sqrt(variance_(j, at));
       out_[static_cast<std::size_t>(j)][k] = std::isfinite(x) ? x : kMissing;
       out_[r + static_cast<std::size_t>(j)][k] =
           std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;
@@ -459,39 +465,65 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
     result_.deviations += std::isfinite(out_[r][k]) ? 1 : 0;
   }
   fill_flags(all, 2 * r);
-  if (steps_ && checked_.size() == sensor_of_.size()) steps_->push(all);
-  if (steps_ && checked_.size() < sensor_of_.size()) steps_->push(all(checked_, Eigen::all));
+  if (check_.steps && check_.rows.size() == sensor_of_.size()) check_.steps->push(all);
+  if (check_.steps && check_.rows.size() < sensor_of_.size())
+    check_.steps->push(all(check_.rows, Eigen::all));
+  if (check_.readings) check_.readings->push(all);
   faults_.done += all.cols();
   const std::vector<std::span<const double>> columns(out_.begin(), out_.end());
   sink.block(columns);
 }
 
+/// By how much a deviation that the algorithm states is multiplied: unit, and what the replay measured of its coverage.
+double Fusing::stated(Eigen::Index input) const {
+  const std::vector<double>& factor = algorithm_.sd_factor;
+  return output_scale_ *
+         (factor.size() == learnt_.inputs.size() ? factor[static_cast<std::size_t>(input)] : 1);
+}
+
 void Fusing::begin_check() {
   if (scene_.tilt) return;
   for (const std::size_t i : present_)
-    if (row_[i] >= 0) checked_.push_back(row_[i]);
-  const Eigen::MatrixXd h = array_of(learnt_).h();
-  steps_.emplace(h(checked_, Eigen::all), instants_->info().count);
+    if (row_[i] >= 0) check_.rows.push_back(row_[i]);
+  const fusion::Array array = array_of(learnt_);
+  const Eigen::MatrixXd h = array.h();
+  if (array.one_common_input() && array.channels >= 3)
+    check_.readings.emplace(array.channels, instants_->info().count);
+  check_.steps.emplace(h(check_.rows, Eigen::all), instants_->info().count);
   // The sum of two sensors' noises is comparable only where the same two are there.
-  if (!steps_->identifiable() && checked_.size() < sensor_of_.size()) steps_.reset();
+  if (!check_.steps->identifiable() && check_.rows.size() < sensor_of_.size()) check_.steps.reset();
 }
 
 void Fusing::check_noise() {
-  if (!steps_) return;
+  if (!check_.steps) return;
   std::vector<std::string> names;
   std::vector<std::optional<StepNoise>> learnt;
-  for (const Eigen::Index row : checked_) {
+  for (const Eigen::Index row : check_.rows) {
     const LearntSensor& sensor = learnt_.sensors[sensor_of_[static_cast<std::size_t>(row)]];
     names.push_back(sensor.name);
     learnt.emplace_back();
     if (sensor.step_noise && sensor.step_noise_error)
       learnt.back() = {2 * std::log(*sensor.step_noise), *sensor.step_noise_error};
   }
-  warn_of_noise(names, learnt, steps_->result(), result_.warnings);
+  warn_of_noise(names, learnt, check_.steps->result(), result_.warnings);
+}
+
+void Fusing::check_readings() {
+  if (!check_.readings) return;
+  std::vector<std::string> names, units;
+  std::vector<std::optional<LearntReading>> learnt;
+  for (const std::size_t i : sensor_of_) {
+    names.push_back(learnt_.sensors[i].name);
+    units.push_back(result_.sensors[i].unit);
+    learnt.push_back(learnt_.sensors[i].reading);
+  }
+  detail::warn_of_changes(
+      check_.readings->changes(learnt), names, units, instants_->info().rate_hz, result_.warnings);
 }
 
 void Fusing::tell() {
   check_noise();
+  check_readings();
   runner_->remarks(result_.warnings);
   const fusion::FaultLog* const log = runner_->faults();
   if (log == nullptr) return;

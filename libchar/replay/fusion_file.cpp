@@ -57,6 +57,19 @@ const Fields<LearntAlignment> kLearntAlignmentFields = {
         "high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
 };
 
+const Fields<LearntReading> kLearntReadingFields = {
+    field<&LearntReading::offset>("offset", {.meaning = "in units of the input", .required = true}),
+    field<&LearntReading::gain>("gain", {.meaning = "beyond one", .required = true}),
+    field<&LearntReading::usual_mean>(
+        "usual_mean",
+        {.range = kNotNegative,
+         .meaning = "nine of ten blocks were in the mean no further from that",
+         .required = true}),
+    field<&LearntReading::usual_rms>(
+        "usual_rms",
+        {.range = kNotNegative, .meaning = "nor did they scatter more", .required = true}),
+};
+
 // ---- options and learnt numbers: keys that the algorithm names ----
 
 // A map whose keys the algorithm knows, not the file.
@@ -301,6 +314,11 @@ const Fields<LearntSensor>& fusion_sensor_fields() {
       field<&LearntSensor::step_noise_error>(
           "step_noise_error",
           {.range = kNotNegative, .meaning = "standard error of the logarithm of its square"}),
+      maybe_part<&LearntSensor::reading>(
+          "reading",
+          kLearntReadingFields,
+          {.meaning = "beside the median of the sensors: a log that differs is warned of",
+           .form = Entry::Form::flow}),
       field<&LearntSensor::left_out>(
           "left_out",
           {.meaning = "true: it had no samples, and algorithms were not given it",
@@ -319,6 +337,11 @@ const Fields<LearntAlgorithm>& fusion_algorithm_fields() {
           "refused", {.meaning = "why it cannot be applied", .otherwise = "it can"}),
       custom<LearntAlgorithm, read_options, write_options_of>(
           "options", "map of numbers", {.meaning = "as used"}),
+      field<&LearntAlgorithm::sd_factor>(
+          "sd_factor",
+          {.meaning = "of each input: the stated standard deviation times this covered 95 % of the "
+                      "errors of the replay",
+           .otherwise = "not known"}),
       custom<LearntAlgorithm, read_learnt, write_learnt>(
           "learnt", "map of lists of numbers", {.meaning = "from the reference"}),
   };

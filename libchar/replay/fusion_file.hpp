@@ -27,6 +27,13 @@ struct LearntAlignment {
 };
 inline constexpr double kNoLimit = 1e300;
 
+/// What a sensor read beside the median u of all: y - u = offset + gain u, and by how much blocks of it usually differ
+/// from that (detail/plan/reading_meter.hpp).
+struct LearntReading {
+  double offset = 0, gain = 0;
+  double usual_mean = 0, usual_rms = 0;
+};
+
 struct LearntSensor {
   std::string name, channel;
   std::string recorded_unit;  ///< of the channel, as recorded
@@ -42,6 +49,7 @@ struct LearntSensor {
   /// Deviation of its noise from sample to sample, in units of the input, and the standard error of the
   /// logarithm of its square (detail/step_noise.hpp).
   std::optional<double> step_noise, step_noise_error;
+  std::optional<LearntReading> reading;
   bool left_out = false;  ///< it had no samples: algorithms were not given it
 };
 
@@ -53,7 +61,9 @@ struct LearntAlgorithm {
   std::string label, name;
   std::vector<std::pair<std::string, double>> options;  ///< all of them, as used
   fusion::Learnt learnt;
-  std::string refused;       ///< why it cannot be applied, a sentence; empty: it can
+  std::vector<double>
+      sd_factor;        ///< of each input: times the stated deviation it covered 95 % of the replay
+  std::string refused;  ///< why it cannot be applied, a sentence; empty: it can
   int line = 0, column = 0;  ///< in the file it was read from
 };
 

@@ -24,6 +24,7 @@
 #include "libchar/replay/detail/plan/copied_sensors.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/detail/plan/plan_sentences.hpp"
+#include "libchar/replay/detail/plan/reading_meter.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/detail/tracks/run_tracks.hpp"
 #include "libchar/replay/view/ranking.hpp"
@@ -240,6 +241,17 @@ class Replay {
     return healthy_;
   }
 
+  void watch_sensors(const Eigen::MatrixXd& samples) {
+    const auto push = [this](const Eigen::MatrixXd& live) {
+      if (watch_.steps) watch_.steps->push(live);
+      if (watch_.readings) watch_.readings->push(live);
+    };
+    if (plan_.live.empty())
+      push(samples);
+    else
+      push(samples(plan_.live, Eigen::all));
+  }
+
   // What another log can be fused with.
   void note_learnt() {
     learnt_ = learnt_of(scene_,
@@ -256,7 +268,9 @@ class Replay {
     ++passes_;
     if (workspace_.estimates != nullptr) begin_estimates();
     const fusion::Array live = subset(plan_.array, plan_.live);
-    if (!scene_.tilt) steps_.emplace(live.h(), plan_.run_to - plan_.run_from);
+    if (!scene_.tilt) watch_.steps.emplace(live.h(), plan_.run_to - plan_.run_from);
+    if (!scene_.tilt && live.one_common_input() && live.channels >= 3)
+      watch_.readings.emplace(live.channels, plan_.run_to - plan_.run_from);
     if (!scene_.tilt) detection_.emplace(plan_, instants_.source().known_faults());
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
     instants_.pass(plan_.run_from, plan_.run_to, plan_.block, passing, [&](const InstantBlock& b) {
@@ -272,8 +286,7 @@ class Replay {
       judge_sensors(b.samples, healthy, b.truth, skip);
       tracker_.push(done, b.samples, b.truth, runs_);
       if (detection_) detection_->push(b.samples);
-      if (steps_ && plan_.live.empty()) steps_->push(b.samples);
-      if (steps_ && !plan_.live.empty()) steps_->push(b.samples(plan_.live, Eigen::all));
+      watch_sensors(b.samples);
       if (workspace_.estimates != nullptr) give_estimates(b);
       if (blocks < kLeastTimed) kept_.push_back(b.samples);
     });
@@ -401,7 +414,10 @@ class Replay {
   std::optional<SceneAlignment> alignment_;
   std::optional<AlignmentResult> aligned_;
   LearntFusion learnt_;
-  std::optional<StepNoiseMeter> steps_;
+  struct {
+    std::optional<StepNoiseMeter> steps;
+    std::optional<detail::ReadingMeter> readings;
+  } watch_;
   std::optional<DetectionSweep> detection_;
   RunFrame frame_, optimum_frame_;
   fusion::Array array_on_run_;
@@ -601,7 +617,12 @@ ReplayResult Replay::collect() {
   judge_best_sensor(out, meters, single, scoring);
   add_tracks(out);
   if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, out.end_s());
-  if (steps_) note_step_noise(steps_->result(), learnt_);
+  if (watch_.steps) note_step_noise(watch_.steps->result(), learnt_);
+  if (watch_.readings) note_readings(watch_.readings->result(), learnt_);
+  for (const AlgorithmRun& run : runs_)
+    for (LearntAlgorithm& algorithm : learnt_.algorithms)
+      if (run.planned().asked && algorithm.label == run.planned().label)
+        algorithm.sd_factor = run.sd_factor();
   out.learnt = learnt_;
   add_doubts_of_chosen(out);
   out.learnt.findings = out.warnings.list();

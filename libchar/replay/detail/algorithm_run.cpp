@@ -156,6 +156,7 @@ AlgorithmRun::AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& fram
     : planned_(&planned), frame_(&frame) {
   const auto inputs = static_cast<std::size_t>(frame.array->inputs());
   meters_.resize(inputs);
+  seen_.coverage.resize(inputs);
   if (frame.allan) allan_.resize(inputs);
   medians_.set_length(frame.instants);
   guarded([&] {
@@ -282,8 +283,8 @@ double AlgorithmRun::median_ns() const {
 void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen::Index skip) {
   if (!alive()) return;
   const Eigen::Index scored = x_.cols() - skip;
-  available_ += static_cast<double>((x_.row(0).tail(scored).array().isFinite()).count());
-  scored_ += static_cast<double>(scored);
+  seen_.available += static_cast<double>((x_.row(0).tail(scored).array().isFinite()).count());
+  seen_.scored += static_cast<double>(scored);
   for (Eigen::Index j = 0; j < truth.rows(); ++j) {
     error_.resize(static_cast<std::size_t>(scored));
     for (Eigen::Index k = skip; k < x_.cols(); ++k) {
@@ -292,6 +293,7 @@ void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen
       // An estimate that overflowed is none.
       error_[static_cast<std::size_t>(k - skip)] =
           std::isfinite(error) ? error * frame_->output_scale : kNone;
+      seen_.coverage[static_cast<std::size_t>(j)].add(error, std::sqrt(variance_(j, k)));
     }
     meters_[static_cast<std::size_t>(j)].push(error_);
     if (!allan_.empty()) allan_[static_cast<std::size_t>(j)].push(error_);
@@ -315,6 +317,13 @@ void AlgorithmRun::note_tracks(double time_s) {
   };
   if (one_input) add(weight_samples_, weights->col(0));
   if (variances) add(variance_samples_, *variances);
+}
+
+std::vector<double> AlgorithmRun::sd_factor() const {
+  std::vector<double> out;
+  for (const detail::CoverageMeter& meter : seen_.coverage)
+    if (const auto factor = meter.factor()) out.push_back(*factor);
+  return out.size() == seen_.coverage.size() ? out : std::vector<double>();
 }
 
 std::optional<Eigen::MatrixXd> AlgorithmRun::weights() const {
@@ -357,7 +366,7 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
     out.rmse = out.inputs[0].error.rmse;
     out.rmse_ci95 = out.inputs[0].error.rmse_ci95;
   }
-  out.availability = scored_ > 0 ? available_ / scored_ : 0;
+  out.availability = seen_.scored > 0 ? seen_.available / seen_.scored : 0;
   out.ns_per_sample = median_ns();
   out.learning_s = learning_s_ - ahead_s_;
   if (frame_->heap != nullptr)

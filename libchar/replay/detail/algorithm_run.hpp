@@ -7,6 +7,7 @@
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/fusion/runner.hpp"
+#include "libchar/replay/detail/coverage_meter.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/detail/run_medians.hpp"
 #include "libchar/replay/fusion_file.hpp"
@@ -72,6 +73,8 @@ class AlgorithmRun {
   /// A row a sensor of the scene; zero (variances: NaN) for those it was not given.
   std::optional<Eigen::MatrixXd> weights() const;
   std::optional<Eigen::VectorXd> variances() const;
+  /// Of each input; empty: not known of all of them.
+  std::vector<double> sd_factor() const;
   std::uint64_t learnt() const { return learnt_; }
   std::uint64_t steps() const { return steps_; }
 
@@ -102,7 +105,11 @@ class AlgorithmRun {
   RunMedians medians_;
   std::vector<double> track_times_;
   std::vector<std::vector<double>> weight_samples_, variance_samples_;
-  double learning_s_ = 0, available_ = 0, scored_ = 0;
+  double learning_s_ = 0;
+  struct {
+    double available = 0, scored = 0;
+    std::vector<detail::CoverageMeter> coverage;  // of the stated deviation of each input
+  } seen_;
   struct {
     std::int64_t held = 0, peak = 0;
   } heap_;

@@ -143,6 +143,13 @@ void note_step_noise(const std::vector<std::optional<StepNoise>>& noise, LearntF
   }
 }
 
+void note_readings(const std::vector<std::optional<LearntReading>>& readings,
+                   LearntFusion& learnt) {
+  std::size_t next = 0;
+  for (LearntSensor& sensor : learnt.sensors)
+    if (!sensor.left_out && next < readings.size()) sensor.reading = readings[next++];
+}
+
 fusion::Array array_of(const LearntFusion& learnt) {
   std::vector<const LearntSensor*> given;
   for (const LearntSensor& sensor : learnt.sensors)

@@ -207,6 +207,7 @@ INPUTS = {
     "leave_one_out_budget": asked(replay(options=("--budget", "0.001"), algorithms="", reference="",
                                          sensors="a,b,c,d,e,f")),
     "fault_after_end": asked(replay(options=("--fault", "a:bias=1@100..110",))),
+    "sensor_changed": asked(fuse(set_to("b", lambda made: [v + 5 for v in made["b"]]))),
     "noise_changed": asked(fuse(louder("b", 3))),
     "noise_changed_of_all": asked(fuse(louder("abc", 3))),
     "another_rate": asked(fuse(again=at_half_rate)),

@@ -1,0 +1,179 @@
+#include "libchar/replay/detail/plan/reading_meter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/fusion/algorithm.hpp"
+
+namespace libchar::detail {
+namespace {
+
+constexpr std::int64_t kLongBlock = 256, kShortBlock = 64, kManyInstants = 5120;
+constexpr std::size_t kMostBlocks = 2048, kLeastBlocks = 8;
+constexpr double kLeastInBlock = 16;  // samples
+constexpr double kUsual = 0.9;        // of the blocks are within what counts as usual
+constexpr double kBeyondUsual = 4;    // times the usual mean of a block
+constexpr double kBeyondNoise =
+    0.5;                         // of the noise: a smaller change of the mean is not worth a word
+constexpr double kLouder = 2.5;  // times the usual rms of a block
+
+double quantile(std::vector<double> values, double share) {
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+/// Of values with weights: half of the weight is on either side.
+double weighted_median(std::vector<std::pair<double, double>> values) {
+  std::sort(values.begin(), values.end());
+  double all = 0, below = 0;
+  for (const auto& [value, weight] : values) all += weight;
+  for (const auto& [value, weight] : values)
+    if ((below += weight) >= 0.5 * all) return value;
+  return 0;
+}
+
+}  // namespace
+
+ReadingMeter::ReadingMeter(Eigen::Index sensors, std::int64_t instants)
+    : n_(static_cast<std::size_t>(sensors)),
+      block_(instants >= kManyInstants ? kLongBlock : kShortBlock),
+      now_(n_) {}
+
+void ReadingMeter::push(const Eigen::MatrixXd& samples) {
+  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+    sorted_.clear();
+    for (const double y : samples.col(k))
+      if (fusion::usable(y)) sorted_.push_back(y);
+    const double u = sorted_.size() >= 3 ? median_in_place(sorted_) : 0;
+    for (std::size_t i = 0; sorted_.size() >= 3 && i < n_; ++i) {
+      const double y = samples(static_cast<Eigen::Index>(i), k);
+      if (!fusion::usable(y)) continue;
+      Sums& s = now_[i];
+      if (s.n == 0) {
+        s.u0 = u;
+        s.r0 = y - u;
+      }
+      const double du = u - s.u0, dr = y - u - s.r0;
+      s.n += 1;
+      s.u += du;
+      s.r += dr;
+      s.uu += du * du;
+      s.ur += du * dr;
+      s.rr += dr * dr;
+    }
+    if (++seen_ % block_ == 0) close();
+  }
+}
+
+void ReadingMeter::close() {
+  if (closed_ % stride_ == 0) blocks_.push_back(now_);
+  ++closed_;
+  std::fill(now_.begin(), now_.end(), Sums{});
+  if (blocks_.size() < kMostBlocks) return;
+  for (std::size_t k = 0; 2 * k < blocks_.size(); ++k) blocks_[k] = std::move(blocks_[2 * k]);
+  blocks_.resize((blocks_.size() + 1) / 2);
+  stride_ *= 2;
+}
+
+ReadingMeter::Fit ReadingMeter::fit(const Sums& s, double a, double b) {
+  // e = r - a - b u with u = u0 + du, r = r0 + dr.
+  const double first = s.r0 - a - b * s.u0, mean = (s.r - b * s.u) / s.n;
+  const double square = (s.rr - 2 * b * s.ur + b * b * s.uu) / s.n;
+  return {first + mean, std::sqrt(std::max(0.0, square + 2 * first * mean + first * first))};
+}
+
+std::vector<std::optional<LearntReading>> ReadingMeter::result() const {
+  std::vector<std::optional<LearntReading>> out(n_);
+  for (std::size_t i = 0; i < n_; ++i) {
+    std::vector<std::pair<double, double>> slopes;
+    std::vector<double> left, means, scatter;
+    for (const auto& block : blocks_) {
+      const Sums& s = block[i];
+      const double variance = s.uu - s.u * s.u / std::max(1.0, s.n);
+      if (s.n >= kLeastInBlock && variance > 0)
+        slopes.emplace_back((s.ur - s.u * s.r / s.n) / variance, variance);
+    }
+    if (slopes.size() < kLeastBlocks) continue;
+    LearntReading reading;
+    reading.gain = weighted_median(std::move(slopes));
+    for (const auto& block : blocks_)
+      if (block[i].n >= kLeastInBlock) left.push_back(fit(block[i], 0, reading.gain).mean);
+    reading.offset = median_in_place(left);
+    for (const auto& block : blocks_) {
+      if (block[i].n < kLeastInBlock) continue;
+      const Fit one = fit(block[i], reading.offset, reading.gain);
+      means.push_back(std::abs(one.mean));
+      scatter.push_back(one.rms);
+    }
+    reading.usual_mean = quantile(std::move(means), kUsual);
+    reading.usual_rms = quantile(std::move(scatter), kUsual);
+    if (std::isfinite(reading.usual_rms) && std::isfinite(reading.gain)) out[i] = reading;
+  }
+  return out;
+}
+
+std::vector<ReadingMeter::Change> ReadingMeter::changes(
+    const std::vector<std::optional<LearntReading>>& learnt) const {
+  std::vector<Change> out;
+  for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
+    if (!learnt[i]) continue;
+    const LearntReading& usual = *learnt[i];
+    Change one{i, 0, 1, 0, 0, false};
+    std::int64_t in_a_row = 0, changed = 0, first = -1, last = 0;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const Sums& s = blocks_[k][i];
+      if (s.n < kLeastInBlock) continue;
+      const Fit here = fit(s, usual.offset, usual.gain);
+      const bool beyond = std::abs(here.mean) > std::max(kBeyondUsual * usual.usual_mean,
+                                                         kBeyondNoise * usual.usual_rms) ||
+                          here.rms > kLouder * usual.usual_rms;
+      in_a_row = beyond ? in_a_row + 1 : 0;
+      if (in_a_row < 2) continue;
+      const auto at = static_cast<std::int64_t>(k);
+      if (first < 0) first = at - 1;
+      last = at;
+      ++changed;
+      if (std::abs(here.mean) > std::abs(one.offset)) one.offset = here.mean;
+      if (usual.usual_rms > 0) one.scatter = std::max(one.scatter, here.rms / usual.usual_rms);
+    }
+    if (changed == 0) continue;
+    one.from = first * block_ * stride_;
+    one.to = std::min((last + 1) * block_ * stride_, seen_);
+    one.to_end = last + 1 == static_cast<std::int64_t>(blocks_.size());
+    out.push_back(one);
+  }
+  return out;
+}
+
+void warn_of_changes(const std::vector<ReadingMeter::Change>& changes,
+                     const std::vector<std::string>& names,
+                     const std::vector<std::string>& units,
+                     double rate_hz,
+                     Findings& warnings) {
+  for (const ReadingMeter::Change& change : changes) {
+    const auto at = [&](std::int64_t instant) {
+      return duration_text(static_cast<double>(instant) / rate_hz);
+    };
+    const std::string& unit = units[change.sensor];
+    warnings.add(
+        "sensor_changed",
+        "sensors read otherwise beside the others than where this was learnt: weights and standard "
+        "deviations of there do not fit",
+        fmt::format("{}: up to {}{}{} off, {} times its scatter, from {} to {}",
+                    printable(names[change.sensor], 40),
+                    brief_text(change.offset, 2),
+                    unit.empty() ? "" : " ",
+                    unit,
+                    brief_text(change.scatter, 2),
+                    change.from == 0 ? std::string("the start") : at(change.from),
+                    change.to_end ? std::string("the end") : at(change.to)));
+  }
+}
+
+}  // namespace libchar::detail

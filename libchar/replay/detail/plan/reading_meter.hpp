@@ -1,0 +1,66 @@
+#pragma once
+// What each sensor reads beside the others, so that another log can be held against it: with u the median of the
+// sensors at an instant,
+//
+//   y_i - u = a_i + b_i u + e_i
+//
+// b the weighted median of the slopes of blocks, a the median of what is left of their means. In each block
+// q_i = mean(e_i) and rms(e_i). Medians leave faults of up to half of the log out; the median of the
+// sensors leaves fewer than half of them out.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libchar/core/finding.hpp"
+#include "libchar/replay/fusion_file.hpp"
+
+namespace libchar::detail {
+
+/// Accumulates over consecutive instants, in blocks; memory does not grow with their number.
+class ReadingMeter {
+ public:
+  /// Of `sensors` that see one input alike, at least three.
+  ReadingMeter(Eigen::Index sensors, std::int64_t instants);
+  /// A column an instant, a row a sensor; missing samples are left out.
+  void push(const Eigen::MatrixXd& samples);
+  /// Of each sensor; none where it has too few samples.
+  std::vector<std::optional<LearntReading>> result() const;
+
+  /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other.
+  struct Change {
+    std::size_t sensor = 0;
+    double offset = 0;              ///< largest mean beyond what was learnt
+    double scatter = 1;             ///< largest rms over the learnt one
+    std::int64_t from = 0, to = 0;  ///< instants
+    bool to_end = false;
+  };
+  std::vector<Change> changes(const std::vector<std::optional<LearntReading>>& learnt) const;
+
+ private:
+  struct Sums {
+    double n = 0, u = 0, r = 0, uu = 0, ur = 0, rr = 0;  // of u and r less their first values
+    double u0 = 0, r0 = 0;
+  };
+  struct Fit {
+    double mean = 0, rms = 0;
+  };
+  static Fit fit(const Sums& sums, double a, double b);
+  void close();
+
+  std::size_t n_;
+  std::int64_t block_, stride_ = 1, seen_ = 0, closed_ = 0;
+  std::vector<Sums> now_;
+  std::vector<std::vector<Sums>> blocks_;  // one of `stride_` is kept
+  std::vector<double> sorted_;
+};
+
+void warn_of_changes(const std::vector<ReadingMeter::Change>& changes,
+                     const std::vector<std::string>& names,
+                     const std::vector<std::string>& units,
+                     double rate_hz,
+                     Findings& warnings);
+
+}  // namespace libchar::detail

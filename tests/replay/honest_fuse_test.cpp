@@ -1,0 +1,177 @@
+// What fuse states is honest: standard deviations cover what they say, sensors that read otherwise are told.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/replay/detail/coverage_meter.hpp"
+#include "libchar/replay/detail/plan/reading_meter.hpp"
+#include "libchar/replay/fuse.hpp"
+#include "libchar/replay/replay.hpp"
+#include "tests/replay/kept_columns.hpp"
+#include "tests/replay/scene_text.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+namespace {
+
+constexpr int kHonestRows = 12000;
+constexpr double kHonestHz = 100;
+
+double honest_truth(int k) {
+  return 2 * std::sin(0.0071 * k) + std::sin(0.0213 * k + 1);
+}
+
+/// Four sensors, each off by a gain, an offset and its noise; part of the noise common to all.
+/// `spoil`: what one sensor reads instead.
+std::string honest_log(std::uint64_t seed, double (*spoil)(double y, int k) = nullptr) {
+  test::Gaussian gauss(seed);
+  const double gain[] = {1.01, 0.99, 1.02, 1}, offset[] = {0.02, -0.03, 0, 0.04};
+  const double noise[] = {0.05, 0.1, 0.08, 0.2};
+  std::string text = "t[s],a[deg/s],b[deg/s],c[deg/s],d[deg/s],x[deg/s]\n";
+  for (int k = 0; k < kHonestRows; ++k) {
+    const double x = honest_truth(k), common = 0.03 * gauss();
+    text += shortest(k / kHonestHz);
+    for (int i = 0; i < 4; ++i) {
+      double y = gain[i] * x + offset[i] + common + noise[i] * gauss();
+      if (i == 1 && spoil != nullptr) y = spoil(y, k);
+      text += "," + shortest(y);
+    }
+    text += "," + shortest(x) + "\n";
+  }
+  return text;
+}
+
+struct HonestBench {
+  explicit HonestBench(const std::string& more = "") {
+    bench.put("log.csv", honest_log(1));
+    const Scene scene = bench.read(
+        "format: scene\nversion: 1\nrecording: log.csv\nsensors:\n"
+        "  - {name: a, noise: 0.05}\n  - {name: b, noise: 0.1}\n  - {name: c, noise: 0.08}\n"
+        "  - {name: d, noise: 0.2}\nreference: x\nlearning: [0, 50]\n" +
+        more);
+    learnt = parse_fusion_file(fusion_yaml(replay(scene, {}).learnt), "fusion.yaml");
+  }
+  FuseResult fuse_log(const std::string& log, const std::string& algorithm, KeptColumns& kept) {
+    bench.put("new.csv", log);
+    FuseOptions options;
+    options.algorithm = algorithm;
+    return fuse(bench.path("new.csv"), learnt, kept, options);
+  }
+  test::SceneBench bench;
+  LearntFusion learnt;
+};
+
+/// Share of the errors within 1.96 of the stated deviation; NaN: none is stated.
+double coverage(const KeptColumns& kept) {
+  double within = 0, all = 0;
+  for (int k = 0; k < kHonestRows; ++k) {
+    const double x = kept.columns[0][static_cast<std::size_t>(k)];
+    const double sd = kept.columns[1][static_cast<std::size_t>(k)];
+    if (std::isnan(x) || std::isnan(sd)) continue;
+    within += std::abs(x - honest_truth(k)) <= 1.96 * sd ? 1 : 0;
+    ++all;
+  }
+  return within / all;
+}
+
+}  // namespace
+
+TEST_CASE("coverage meter: the factor that makes 95 % of normal errors covered") {
+  test::Gaussian gauss(4);
+  detail::CoverageMeter right, small, none;
+  for (int k = 0; k < 100000; ++k) {
+    const double e = gauss();
+    right.add(e, 1);
+    small.add(e, 0.2);  // a deviation stated a fifth of what it is
+    none.add(e, std::nan(""));
+  }
+  CHECK(*right.factor() == Approx(1).epsilon(0.015));
+  CHECK(*small.factor() == Approx(5).epsilon(0.015));
+  CHECK_FALSE(none.factor());
+  detail::CoverageMeter few;
+  for (int k = 0; k < 199; ++k) few.add(1, 1);
+  CHECK_FALSE(few.factor());
+}
+
+TEST_CASE("fuse: standard deviations cover 92 to 97 % on another log, whatever the method states") {
+  for (const char* align : {"", "align: {learn: learning}\n"}) {
+    HonestBench bench(align);
+    int stated = 0;
+    for (const LearntAlgorithm& algorithm : bench.learnt.algorithms) {
+      if (!algorithm.refused.empty() || algorithm.sd_factor.empty()) continue;
+      INFO(algorithm.label << (*align == 0 ? "" : ", aligned") << ", factor "
+                           << algorithm.sd_factor[0]);
+      KeptColumns kept;
+      bench.fuse_log(honest_log(2), algorithm.label, kept);
+      const double share = coverage(kept);
+      CHECK(share >= 0.92);
+      CHECK(share <= 0.97);
+      ++stated;
+    }
+    CHECK(stated >= 10);
+  }
+}
+
+TEST_CASE("reading meter: offset, gain and scatter of a sensor beside the median of all") {
+  test::Gaussian gauss(8);
+  detail::ReadingMeter meter(5, 20000);
+  Eigen::MatrixXd y(5, 20000);
+  for (Eigen::Index k = 0; k < y.cols(); ++k) {
+    const double x = honest_truth(static_cast<int>(k));
+    for (Eigen::Index i = 0; i < 5; ++i)
+      y(i, k) = (i == 4 ? 1.1 * x + 0.5 : x) + (i == 4 ? 0.2 : 0.001) * gauss();
+  }
+  meter.push(y);
+  const auto learnt = meter.result();
+  REQUIRE(learnt[4]);
+  CHECK(learnt[4]->offset == Approx(0.5).margin(0.01));
+  CHECK(learnt[4]->gain == Approx(0.1).margin(0.005));
+  CHECK(learnt[4]->usual_rms == Approx(0.2).epsilon(0.15));
+  CHECK(learnt[4]->usual_mean < 0.06);
+  CHECK(meter.changes(learnt).empty());
+  // From instant 10240 on the first is off by 0.3; blocks of other lengths tell the same.
+  y.row(0).rightCols(20000 - 10240).array() += 0.3;
+  detail::ReadingMeter other(5, 20000);
+  for (Eigen::Index k = 0; k < y.cols(); k += 1000) other.push(y.middleCols(k, 1000));
+  const auto changes = other.changes(learnt);
+  REQUIRE(changes.size() == 1);
+  CHECK(changes[0].sensor == 0);
+  CHECK(changes[0].offset == Approx(0.3).margin(0.01));
+  CHECK(changes[0].from == 10240);
+  CHECK(changes[0].to_end);
+}
+
+TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log is silent") {
+  HonestBench bench;
+  const auto told = [&](const std::string& log) -> std::string {
+    std::string out;
+    for (const char* algorithm : {"least-squares", "minque"}) {
+      KeptColumns kept;
+      const FuseResult result = bench.fuse_log(log, algorithm, kept);
+      const Finding* found = result.warnings.find("sensor_changed");
+      out += found == nullptr ? "" : found->places.empty() ? "?" : found->places[0] + "; ";
+    }
+    return out;
+  };
+  for (std::uint64_t seed = 2; seed < 6; ++seed) CHECK(told(honest_log(seed)).empty());
+  using Spoil = double (*)(double, int);
+  const std::pair<const char*, Spoil> kinds[] = {
+      {"offset", [](double y, int) { return y + 0.5; }},
+      {"sign", [](double y, int) { return -y; }},
+      {"gain", [](double y, int) { return 0.8 * y; }},
+      {"unit", [](double y, int) { return 57.29578 * y; }},
+      {"noise", [](double y, int k) { return y + (k % 2 == 0 ? 0.6 : -0.6); }},
+      {"from the middle", [](double y, int k) { return k < 6000 ? y : y + 5; }}};
+  for (const auto& [kind, spoil] : kinds) {
+    INFO(kind);
+    const std::string places = told(honest_log(7, spoil));
+    CHECK_THAT(places, Contains("b: up to"));
+    CHECK_THAT(places, Contains("to the end"));
+    CHECK_THAT(places, Contains(std::string(kind) == "from the middle" ? "from 59" : "from the start"));
+    CHECK_THAT(places, !Contains("a: up") && !Contains("c: up") && !Contains("d: up"));
+  }
+}
