@@ -511,7 +511,7 @@ void Fusing::check_noise() {
 void Fusing::check_readings() {
   if (!check_.readings) return;
   std::vector<std::string> names, units;
-  std::vector<std::optional<LearntReading>> learnt;
+  std::vector<std::optional<LearntSensor::Reading>> learnt;
   for (const std::size_t i : sensor_of_) {
     names.push_back(learnt_.sensors[i].name);
     units.push_back(result_.sensors[i].unit);

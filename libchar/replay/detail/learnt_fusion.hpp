@@ -22,7 +22,8 @@ LearntFusion learnt_of(const Scene& scene,
 /// Into the sensors that were not left out.
 void note_step_noise(const std::vector<std::optional<StepNoise>>& noise, LearntFusion& learnt);
 
-void note_readings(const std::vector<std::optional<LearntReading>>& readings, LearntFusion& learnt);
+void note_readings(const std::vector<std::optional<LearntSensor::Reading>>& readings,
+                   LearntFusion& learnt);
 
 /// What algorithms were told, from the file: an array of the sensors that were not left out.
 fusion::Array array_of(const LearntFusion& learnt);

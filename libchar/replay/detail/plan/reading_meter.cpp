@@ -38,6 +38,25 @@ double weighted_median(std::vector<std::pair<double, double>> values) {
   return 0;
 }
 
+/// One sensor that is far off moves the median by as much as the others scatter: what moves no further than
+/// that is its doing.
+std::vector<ReadingMeter::Change> own_changes(
+    std::vector<ReadingMeter::Change> changes,
+    const std::vector<std::optional<LearntSensor::Reading>>& learnt) {
+  if (changes.size() < 2) return changes;
+  std::vector<double> noise;
+  for (const auto& one : learnt)
+    if (one) noise.push_back(one->usual_rms);
+  const double usual = median_in_place(noise);
+  double furthest = 0;
+  for (const auto& change : changes) furthest = std::max(furthest, std::abs(change.offset));
+  std::erase_if(changes, [&](const ReadingMeter::Change& change) {
+    return change.scatter <= kLouder && std::abs(change.offset) < furthest &&
+           std::abs(change.offset) <= usual;
+  });
+  return changes;
+}
+
 }  // namespace
 
 ReadingMeter::ReadingMeter(Eigen::Index sensors, std::int64_t instants)
@@ -88,8 +107,8 @@ ReadingMeter::Fit ReadingMeter::fit(const Sums& s, double a, double b) {
   return {first + mean, std::sqrt(std::max(0.0, square + 2 * first * mean + first * first))};
 }
 
-std::vector<std::optional<LearntReading>> ReadingMeter::result() const {
-  std::vector<std::optional<LearntReading>> out(n_);
+std::vector<std::optional<LearntSensor::Reading>> ReadingMeter::result() const {
+  std::vector<std::optional<LearntSensor::Reading>> out(n_);
   for (std::size_t i = 0; i < n_; ++i) {
     std::vector<std::pair<double, double>> slopes;
     std::vector<double> left, means, scatter;
@@ -100,7 +119,7 @@ std::vector<std::optional<LearntReading>> ReadingMeter::result() const {
         slopes.emplace_back((s.ur - s.u * s.r / s.n) / variance, variance);
     }
     if (slopes.size() < kLeastBlocks) continue;
-    LearntReading reading;
+    LearntSensor::Reading reading;
     reading.gain = weighted_median(std::move(slopes));
     for (const auto& block : blocks_)
       if (block[i].n >= kLeastInBlock) left.push_back(fit(block[i], 0, reading.gain).mean);
@@ -119,11 +138,11 @@ std::vector<std::optional<LearntReading>> ReadingMeter::result() const {
 }
 
 std::vector<ReadingMeter::Change> ReadingMeter::changes(
-    const std::vector<std::optional<LearntReading>>& learnt) const {
+    const std::vector<std::optional<LearntSensor::Reading>>& learnt) const {
   std::vector<Change> out;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
     if (!learnt[i]) continue;
-    const LearntReading& usual = *learnt[i];
+    const LearntSensor::Reading& usual = *learnt[i];
     Change one{i, 0, 1, 0, 0, false};
     std::int64_t in_a_row = 0, changed = 0, first = -1, last = 0;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
@@ -148,7 +167,7 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(
     one.to_end = last + 1 == static_cast<std::int64_t>(blocks_.size());
     out.push_back(one);
   }
-  return out;
+  return own_changes(std::move(out), learnt);
 }
 
 void warn_of_changes(const std::vector<ReadingMeter::Change>& changes,
@@ -161,18 +180,18 @@ void warn_of_changes(const std::vector<ReadingMeter::Change>& changes,
       return duration_text(static_cast<double>(instant) / rate_hz);
     };
     const std::string& unit = units[change.sensor];
-    warnings.add(
-        "sensor_changed",
-        "sensors read otherwise beside the others than where this was learnt: weights and standard "
-        "deviations of there do not fit",
-        fmt::format("{}: up to {}{}{} off, {} times its scatter, from {} to {}",
-                    printable(names[change.sensor], 40),
-                    brief_text(change.offset, 2),
-                    unit.empty() ? "" : " ",
-                    unit,
-                    brief_text(change.scatter, 2),
-                    change.from == 0 ? std::string("the start") : at(change.from),
-                    change.to_end ? std::string("the end") : at(change.to)));
+    warnings.add("sensor_changed",
+                 "sensors read otherwise, relative to the others, than where this was learnt: "
+                 "weights and standard "
+                 "deviations of there do not fit",
+                 fmt::format("{}: up to {}{}{} off, {} times its scatter, from {} to {}",
+                             printable(names[change.sensor], 40),
+                             brief_text(change.offset, 2),
+                             unit.empty() ? "" : " ",
+                             unit,
+                             brief_text(change.scatter, 2),
+                             change.from == 0 ? std::string("the start") : at(change.from),
+                             change.to_end ? std::string("the end") : at(change.to)));
   }
 }
 

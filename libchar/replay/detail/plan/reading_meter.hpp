@@ -1,5 +1,5 @@
 #pragma once
-// What each sensor reads beside the others, so that another log can be held against it: with u the median of the
+// What each sensor reads relative to the others, so that another log can be held against it: with u the median of the
 // sensors at an instant,
 //
 //   y_i - u = a_i + b_i u + e_i
@@ -27,7 +27,7 @@ class ReadingMeter {
   /// A column an instant, a row a sensor; missing samples are left out.
   void push(const Eigen::MatrixXd& samples);
   /// Of each sensor; none where it has too few samples.
-  std::vector<std::optional<LearntReading>> result() const;
+  std::vector<std::optional<LearntSensor::Reading>> result() const;
 
   /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other.
   struct Change {
@@ -37,7 +37,8 @@ class ReadingMeter {
     std::int64_t from = 0, to = 0;  ///< instants
     bool to_end = false;
   };
-  std::vector<Change> changes(const std::vector<std::optional<LearntReading>>& learnt) const;
+  std::vector<Change> changes(
+      const std::vector<std::optional<LearntSensor::Reading>>& learnt) const;
 
  private:
   struct Sums {
