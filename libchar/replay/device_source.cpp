@@ -120,6 +120,13 @@ class Writer {
         out.cycles_m33,
         options_.single ? "" : " (double is computed in software there)");
     for (const std::string& note : out.notes) text += "   Note: " + note + ".\n";
+    for (const Finding& finding : learnt_.findings)
+      if (finding.severity != Severity::note)
+        text += fmt::format("   {}: {}{}{}.\n",
+                            name_of(finding.severity),
+                            comment_words(finding.subject),
+                            finding.subject.empty() ? "" : ": ",
+                            comment_words(finding.sentence));
     return text + "*/\n";
   }
 

@@ -57,19 +57,17 @@ const Fields<LearntAlignment> kLearntAlignmentFields = {
         "high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
 };
 
-const Fields<LearntSensor::Reading> kLearntReadingFields = {
-    field<&LearntSensor::Reading::offset>("offset",
-                                          {.meaning = "in units of the input", .required = true}),
-    field<&LearntSensor::Reading::gain>("gain", {.meaning = "beyond one", .required = true}),
+// One sensor may be the median at nearly every instant: zeros are written too.
+const Fields<LearntSensor::Reading> kLearntReadingFields = always(Fields<LearntSensor::Reading>{
+    field<&LearntSensor::Reading::offset>("offset", {.meaning = "in units of the input"}),
+    field<&LearntSensor::Reading::gain>("gain", {.meaning = "beyond one"}),
     field<&LearntSensor::Reading::usual_mean>(
         "usual_mean",
         {.range = kNotNegative,
-         .meaning = "nine of ten blocks were in the mean no further from that",
-         .required = true}),
+         .meaning = "nine of ten blocks were in the mean no further from that"}),
     field<&LearntSensor::Reading::usual_rms>(
-        "usual_rms",
-        {.range = kNotNegative, .meaning = "nor did they scatter more", .required = true}),
-};
+        "usual_rms", {.range = kNotNegative, .meaning = "nor did they scatter more"}),
+});
 
 // ---- options and learnt numbers: keys that the algorithm names ----
 

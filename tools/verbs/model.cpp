@@ -306,9 +306,7 @@ VerbEntry verb_model() {
           model_options,
           {{"what a model says", "sensorchar model report/gyro_z.sensor.yaml"},
            {"the numbers of an IMU as Kalibr wants them, its z axes for all",
-            "sensorchar model report --to kalibr --axes z -o imu.yaml"},
-           {"the method that a replay recommends, for a microcontroller",
-            "sensorchar model array-replay --to c --dtype f32 -o fusion.c"}}};
+            "sensorchar model report --to kalibr --axes z -o imu.yaml"}}};
 }
 
 }  // namespace sensorchar
