@@ -16,6 +16,8 @@ set(CHART_JS_COPYRIGHT /usr/share/doc/libjs-chart.js/copyright CACHE FILEPATH ""
 
 string(JOIN " " CMAKE_CXX_FLAGS_INIT
   -msimd128 -fwasm-exceptions
+  # A size is 32 bits here: a number of 64 becomes one in words.
+  -Wshorten-64-to-32
   -isystem "${PAGE_LIBRARIES}/include"
   # What its C++ library lacks.
   -include "${CMAKE_CURRENT_LIST_DIR}/compatible.hpp"
@@ -23,5 +25,6 @@ string(JOIN " " CMAKE_CXX_FLAGS_INIT
   -DR123_USE_GNU_UINT128=1 -DR123_USE_MULHILO64_ASM=0 -DR123_USE_SSE=0)
 set(CMAKE_C_FLAGS_INIT "-msimd128")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG" CACHE STRING "") # -O3 is larger and no faster there
+set(LIBCHAR_COLD -Oz CACHE STRING "")
 string(JOIN " " CMAKE_EXE_LINKER_FLAGS_INIT
   -fwasm-exceptions -msimd128 "-L${PAGE_LIBRARIES}/lib")
