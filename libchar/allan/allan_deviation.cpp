@@ -289,8 +289,8 @@ AllanPoint point_of(const Totals& total,
 
 IndexRange longest(std::span<const double> record) {
   IndexRange best;
-  std::uint64_t begin = 0;
-  for (std::uint64_t i = 0; i <= record.size(); ++i)
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= record.size(); ++i)
     if (i == record.size() || !std::isfinite(record[i])) {
       if (i - begin > best.end - best.begin) best = {begin, i};
       begin = i + 1;
@@ -397,8 +397,8 @@ std::vector<AllanPoint> points_of_family(std::span<const double> used,
                                          AllanCurve& curve) {
   FamilyInput input{used, options.data, curve.dt_s, balancing_scale(used), {}, 0};
   input.work_a_point = share_of_work(options, factors.size());
-  for (std::uint64_t begin = 0; begin < used.size(); ++begin) {
-    const std::uint64_t end = begin + finite_run(used.subspan(begin));
+  for (std::size_t begin = 0; begin < used.size(); ++begin) {
+    const std::size_t end = begin + finite_run(used.subspan(begin));
     if (end > begin) input.stretches.push_back({begin, end});
     begin = end;
   }
