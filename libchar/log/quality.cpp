@@ -57,8 +57,8 @@ class DistinctValues {
   static constexpr int kLeastBits = 4;
 
   double& slot_of(double value) {
-    std::size_t slot =
-        in_memory((std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_));
+    std::size_t slot = detail::in_memory(
+        (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_));
     while (slots_[slot] != value && !std::isnan(slots_[slot])) slot = (slot + 1) % slots_.size();
     return slots_[slot];
   }

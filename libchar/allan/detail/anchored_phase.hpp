@@ -31,8 +31,8 @@ struct IndexRange {
 struct AnchoredPhase {
   static constexpr std::size_t kBlock = 1024;  // L
   std::size_t points = 0;                      ///< of x; W has one more
-  double scale = 1;                              ///< power of two by which all was multiplied
-  bool summed = false;                           ///< local2 and W are there
+  double scale = 1;                            ///< power of two by which all was multiplied
+  bool summed = false;                         ///< local2 and W are there
   std::vector<double> local, local2;
   std::vector<DoubleDouble> anchor, base, base2;  ///< A_b, X_b, W_b
   std::vector<IndexRange> stretches;              ///< of phase points between missing samples

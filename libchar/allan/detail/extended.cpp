@@ -170,7 +170,7 @@ std::vector<AllanPoint> extended_points(const FamilyInput& input,
   std::vector<char> spaced(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
     bool one = false;
-    points[k] = extended_point(input, row, in_memory(factors[k]), one);
+    points[k] = extended_point(input, row, detail::in_memory(factors[k]), one);
     spaced[k] = one ? 1 : 0;
   });
   note_stride(static_cast<std::uint64_t>(std::count(spaced.begin(), spaced.end(), 1)), notes);

@@ -66,14 +66,15 @@ AllanPoint family_point(
 }
 
 std::size_t family_stride(const FamilyInput& input,
-                            std::uint64_t m,
-                            std::uint64_t starts,
-                            std::uint64_t work) {
+                          std::uint64_t m,
+                          std::uint64_t starts,
+                          std::uint64_t work) {
   const double all = static_cast<double>(starts) * static_cast<double>(work);
   if (input.work_a_point == 0 || all <= static_cast<double>(input.work_a_point)) return 1;
   const auto wanted =
       static_cast<std::uint64_t>(std::ceil(all / static_cast<double>(input.work_a_point)));
-  return in_memory(std::clamp<std::uint64_t>(wanted, 1, std::max<std::uint64_t>(1, m / 16)));
+  return detail::in_memory(
+      std::clamp<std::uint64_t>(wanted, 1, std::max<std::uint64_t>(1, m / 16)));
 }
 
 void note_stride(std::uint64_t points, std::vector<std::string>& notes) {

@@ -76,9 +76,9 @@ AllanPoint family_point(
 /// Every how manieth start is used, so that `starts` of `work` operations each cost no more than is
 /// allowed: at most m/16, which leaves the degrees of freedom as they are to a hundredth.
 std::size_t family_stride(const FamilyInput& input,
-                            std::uint64_t m,
-                            std::uint64_t starts,
-                            std::uint64_t work);
+                          std::uint64_t m,
+                          std::uint64_t starts,
+                          std::uint64_t work);
 void note_stride(std::uint64_t points, std::vector<std::string>& notes);
 
 /// Sum over blocks of `block` term starts in `stretch`: `of_block(first, count)` adds up the starts

@@ -81,7 +81,7 @@ std::vector<AllanPoint> parabolic_points(const FamilyInput& input,
                                          std::vector<std::string>&) {
   std::vector<AllanPoint> points(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
-    const std::size_t m = in_memory(factors[k]);
+    const std::size_t m = detail::in_memory(factors[k]);
     FamilySum total;
     for (const IndexRange& s : input.stretches) {
       if (input.points(s) <= 2 * m) continue;

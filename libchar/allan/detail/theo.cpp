@@ -123,7 +123,7 @@ double bias_removal(FamilyInput input, const IndexRange& stretch, std::vector<st
                     std::to_string(last + 1) + " ratios, evenly spaced");
   std::vector<double> ratio(used);
   parallel::for_each(0, used, [&](std::size_t k) {
-    const std::size_t i = all ? k : in_memory(std::uint64_t{k} * last / (used - 1));
+    const std::size_t i = all ? k : detail::in_memory(std::uint64_t{k} * last / (used - 1));
     bool spaced = false;
     const double theo = theo1_point(input, stretch, 12 + 4 * i, spaced).deviation;
     const double allan = allan_point(input, stretch, 9 + 3 * i).deviation;
@@ -150,11 +150,11 @@ std::vector<AllanPoint> theo_points(const FamilyInput& input,
   std::vector<char> spaced(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
     if (factors[k] <= allan_up_to) {
-      points[k] = allan_point(input, stretch, in_memory(factors[k]));
+      points[k] = allan_point(input, stretch, detail::in_memory(factors[k]));
       return;
     }
     bool one = false;
-    points[k] = theo1_point(input, stretch, in_memory(factors[k]), one);
+    points[k] = theo1_point(input, stretch, detail::in_memory(factors[k]), one);
     points[k].deviation *= removal;
     spaced[k] = one ? 1 : 0;
   });

@@ -66,7 +66,7 @@ std::vector<AllanPoint> largest_intervals(const FamilyInput& input,
   std::vector<AllanPoint> points(factors.size());
   Extremes extremes(phase_of_stretches(input));
   for (std::size_t k = 0; k < factors.size(); ++k) {
-    const std::size_t m = in_memory(factors[k]);
+    const std::size_t m = detail::in_memory(factors[k]);
     extremes.widen(m + 1);
     double most = 0;
     AllanPoint& point = points[k];
@@ -118,7 +118,7 @@ std::vector<AllanPoint> interval_points(const FamilyInput& input,
     points = largest_intervals(input, factors);
   } else {
     parallel::for_each(0, factors.size(), [&](std::size_t k) {
-      points[k] = mean_square_interval(input, in_memory(factors[k]));
+      points[k] = mean_square_interval(input, detail::in_memory(factors[k]));
     });
   }
   for (AllanPoint& point : points) {

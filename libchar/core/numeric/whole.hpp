@@ -17,10 +17,13 @@ Whole clamped_whole(double value, Whole lowest, Whole highest) {
   return static_cast<Whole>(value);
 }
 
+namespace detail {
 /// A number of things in memory: where sizes have 32 bits (a web page), the largest of them for all
 /// that memory could not hold.
 constexpr std::size_t in_memory(std::uint64_t count) {
-  return static_cast<std::size_t>(std::min<std::uint64_t>(count, std::numeric_limits<std::size_t>::max()));
+  return static_cast<std::size_t>(
+      std::min<std::uint64_t>(count, std::numeric_limits<std::size_t>::max()));
 }
+}  // namespace detail
 
 }  // namespace libchar

@@ -1,6 +1,6 @@
 #include "libchar/log/arrays/hdf5_worker.hpp"
-#include "libchar/core/numeric/whole.hpp"
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_HDF5
@@ -331,7 +331,7 @@ class Worker {
 
   /// The elements of a question; empty when they cannot be read.
   std::vector<std::byte> read(const Hdf5Question& q) const {
-    const std::size_t array = in_memory(q.array);
+    const std::size_t array = detail::in_memory(q.array);
     if (array >= readers_.size() || !readers_[array]) return {};
     const Reader& reader = *readers_[array];
     std::vector<hsize_t> start(reader.shape.size(), 0), count = reader.shape;

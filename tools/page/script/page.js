@@ -240,16 +240,16 @@ function drawFiles() {
 const PAGE = /(^|\/)(report|index|runs)\.html$/;
 const pagesOf = files => files.filter(({ name }) => PAGE.test(name)).sort((a, b) => a.name.split("/").length - b.name.split("/").length);
 
-/** Prints itself when the page asks for it: from outside, nobody may. */
+/** Prints itself when the page asks for it: from outside, nobody may. In front of the report's own policy, which allows no other script. */
 const PRINTS = "<script>addEventListener('message', event => event.data === 'print' && print());</scr" + "ipt>";
 
 function showPage({ bytes }) {
-  byId("report").srcdoc = new TextDecoder().decode(bytes) + PRINTS;
+  byId("report").srcdoc = new TextDecoder().decode(bytes).replace("<head>", head => head + PRINTS);
 }
 
 /** What is shown as text: what the program says, and a single short file. */
 function shownText(out, files) {
-  const [file] = files, short = files.length === 1 && file.bytes.length < 2e5 && !/\.(svg|npy|html)$/.test(file.name);
+  const texts = files.filter(({ name }) => !/\.(svg|npy|html)$/.test(name)), [file] = texts, short = texts.length === 1 && file.bytes.length < 2e5;
   return `${out}\n${short ? new TextDecoder().decode(file.bytes) : ""}`.trim();
 }
 
