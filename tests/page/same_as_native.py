@@ -26,8 +26,6 @@ OF_THE_RUN = {"tool", "command", "measured", "seconds", "files_sha256", "iterati
 # Exact ramps and steps: what is left of them is the rounding of sines and logarithms, and so are the
 # coefficients. Their ratings are compared.
 ROUNDING = {"jazzy.db3", "085_jitter.csv"}
-# Takes more memory natively than a page can have: it ends in the sentence that says so.
-TOO_LARGE = {"103_5000_columns.csv"}
 LOGS = ["imu_at_rest.csv", "arrays/*.npz", "arrays/*.h5", "arrays/*.mat", "arrays/*.imu", "flight/*.ulg",
         "flight/*.bin", "npy/*.npy", "packed/table.csv.*", "ros/*.db3", "ros/*.mcap", "ros/*.bag",
         "known/badinputs/csv/*", "known/badinputs/npy/*.npy"]
@@ -125,8 +123,6 @@ def characterized(runs, log, folder, words):
         shutil.rmtree(folder / side, ignore_errors=True)
     answers = {side: runs(side, ["characterize", str(log), *words, "-o", side, "--force", "--no-timing"], folder)
                for side in ("native", "page")}
-    if log in TOO_LARGE:
-        return [] if "error E0403: not enough memory" in answers["page"][2] else [answers["page"][2].strip()[-300:]]
     codes = [answers[side][0] for side in ("native", "page")]
     if codes[0] != codes[1]:
         return [f"exit codes {codes}: {answers['page'][2].strip()[-300:]}"]
