@@ -56,7 +56,8 @@ class Runs:
 
 
 def tolerance(a, b, width, where):
-    if where.endswith("likelihood_ratio"):
+    # A residual is in standard deviations: these are its interval.
+    if where.endswith("likelihood_ratio") or "/residuals/z[" in where:
         return NEAR
     size = max(abs(a), abs(b))
     return max(NEAR * width, 1e-12 * size) if width else max(NEAR * size, 1e-300)
