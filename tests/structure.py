@@ -24,6 +24,7 @@ LIMITS = {  # of one key of a gate, in what it counts
     "members": (20, "data members of a class"),
     "files": (24, "sources in a folder"),
     "names": (300, "names directly in libchar::, in public headers"),
+    "twice": (1, "classes of one name: the linker takes the functions of one for all"),
     "eigen": (0, "includes of Eigen in a header that libchar/libchar.hpp reaches"),
     "columns": (0, f"lines above {COLUMNS} columns"),
     "owner": (0, "spellings outside of the owner's file"),
@@ -87,6 +88,15 @@ def gate_names(tree, counts):
     counts["names", "libchar"] = Count(len(names), sorted(names))
 
 
+def gate_twice(tree, counts):
+    for path, text in tree.cpp("libchar", "tools").items():
+        for within, scope in cpp.parse(text).walk():
+            spaces = [s.name for s in within if s.kind != "file"]
+            own = scope.kind == "class" and "::" not in scope.name and "(anonymous)" not in (*spaces, scope.name)
+            if own and all(s.kind != "class" for s in within):
+                counts["twice", "::".join((*spaces, scope.name))].add(f"{path}:{scope.line}")
+
+
 def gate_eigen(tree, counts):
     reached, todo = set(), ["libchar/libchar.hpp"]
     while todo:
@@ -133,7 +143,7 @@ def gate_owners(tree, counts):
 
 def measured(root):
     tree, counts = Tree(root), collections.defaultdict(Count)
-    for gate in (gate_members, gate_files, gate_names, gate_eigen, gate_columns, gate_owners):
+    for gate in (gate_members, gate_files, gate_names, gate_twice, gate_eigen, gate_columns, gate_owners):
         gate(tree, counts)
     return counts
 

@@ -34,6 +34,7 @@
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/detail/kernels/present_points.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/process/work.hpp"
@@ -194,19 +195,19 @@ Starts starts_in(const IndexRange& stretch,
 
 /// The record continued by mirrored copies of `reach` samples at both ends (phase: reflected about
 /// its end points).
-std::vector<double> continued(std::span<const double> x, std::uint64_t reach, DataKind kind) {
+std::vector<double> continued(std::span<const double> x, std::size_t reach, DataKind kind) {
   std::vector<double> all;
   all.reserve(x.size() + 2 * reach);
   if (kind == DataKind::rate) {
-    for (std::uint64_t j = reach; j-- > 0;) all.push_back(x[j]);
+    for (std::size_t j = reach; j-- > 0;) all.push_back(x[j]);
     all.insert(all.end(), x.begin(), x.end());
-    for (std::uint64_t j = 0; j < reach; ++j) all.push_back(x[x.size() - 1 - j]);
+    for (std::size_t j = 0; j < reach; ++j) all.push_back(x[x.size() - 1 - j]);
     return all;
   }
   const double last = x.back() - x[0];
-  for (std::uint64_t j = reach; j > 0; --j) all.push_back(-(x[j] - x[0]));
+  for (std::size_t j = reach; j > 0; --j) all.push_back(-(x[j] - x[0]));
   for (const double value : x) all.push_back(value - x[0]);
-  for (std::uint64_t j = 1; j <= reach; ++j)
+  for (std::size_t j = 1; j <= reach; ++j)
     all.push_back(last + (last - (x[x.size() - 1 - j] - x[0])));
   return all;
 }
@@ -221,7 +222,7 @@ Totals total_over(const AnchoredPhase& phase,
                   const DeviationRow& f,
                   std::uint64_t m,
                   const std::vector<Starts>& ranges) {
-  const std::uint64_t pieces = phase.points / kPiece + 1;
+  const std::size_t pieces = detail::in_memory(phase.points / kPiece + 1);
   std::vector<Totals> part(pieces);
   parallel::for_each(0, pieces, [&](std::size_t piece) {
     const std::uint64_t begin = piece * kPiece, end = begin + kPiece;
@@ -234,7 +235,13 @@ Totals total_over(const AnchoredPhase& phase,
                           stride};
       if (cut.count() == 0) continue;
       part[piece].terms += cut.count();
-      part[piece].sum += sum_of_squares(phase, f.order, f.of_sum, m, cut.begin, cut.end, stride);
+      part[piece].sum += sum_of_squares(phase,
+                                        f.order,
+                                        f.of_sum,
+                                        detail::in_memory(m),
+                                        detail::in_memory(cut.begin),
+                                        detail::in_memory(cut.end),
+                                        detail::in_memory(stride));
     }
   });
   Totals all;
@@ -289,8 +296,8 @@ AllanPoint point_of(const Totals& total,
 
 IndexRange longest(std::span<const double> record) {
   IndexRange best;
-  std::uint64_t begin = 0;
-  for (std::uint64_t i = 0; i <= record.size(); ++i)
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= record.size(); ++i)
     if (i == record.size() || !std::isfinite(record[i])) {
       if (i - begin > best.end - best.begin) best = {begin, i};
       begin = i + 1;
@@ -397,8 +404,8 @@ std::vector<AllanPoint> points_of_family(std::span<const double> used,
                                          AllanCurve& curve) {
   FamilyInput input{used, options.data, curve.dt_s, balancing_scale(used), {}, 0};
   input.work_a_point = share_of_work(options, factors.size());
-  for (std::uint64_t begin = 0; begin < used.size(); ++begin) {
-    const std::uint64_t end = begin + finite_run(used.subspan(begin));
+  for (std::size_t begin = 0; begin < used.size(); ++begin) {
+    const std::size_t end = begin + finite_run(used.subspan(begin));
     if (end > begin) input.stretches.push_back({begin, end});
     begin = end;
   }

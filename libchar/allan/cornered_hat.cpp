@@ -213,7 +213,7 @@ std::vector<double> phase_of_log(const std::vector<double>& record, DataKind kin
 
 MeanProduct mean_product(const std::vector<double>& a,
                          const std::vector<double>& b,
-                         std::uint64_t m,
+                         std::size_t m,
                          double tau_s) {
   MeanProduct out;
   for (std::size_t i = 0; i + 2 * m < a.size(); ++i) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 
@@ -42,7 +43,7 @@ DynamicDeviation dynamic_deviation(std::span<const double> record,
   check_window(record.size(), window, step);
   DynamicDeviation out;
   out.type = options.type;
-  out.windows.resize((record.size() - window) / step + 1);
+  out.windows.resize(detail::in_memory((record.size() - window) / step + 1));
   std::vector<char> empty(out.windows.size());
   parallel::for_each(0, out.windows.size(), [&](std::size_t k) {
     const std::uint64_t from = k * step;
@@ -50,7 +51,8 @@ DynamicDeviation dynamic_deviation(std::span<const double> record,
     result.from_s = static_cast<double>(from) * dt_s;
     result.to_s = static_cast<double>(from + window) * dt_s;
     try {
-      result.curve = allan_deviation(record.subspan(from, window), dt_s, options);
+      result.curve = allan_deviation(
+          record.subspan(detail::in_memory(from), detail::in_memory(window)), dt_s, options);
     } catch (const Error& error) {
       if (error.problem().kind != ErrorKind::numeric) throw;
       empty[k] = 1;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_covariance.hpp"
+#include "libchar/core/numeric/whole.hpp"
 
 namespace libchar {
 namespace {
@@ -114,13 +115,14 @@ void add_ten_a_decade(std::span<const double> record,
       continue;
     }
     if (length <= kOfLong) {  // of the record itself, no second one beside it
-      const std::size_t first = length / 2;
+      const std::size_t first = detail::in_memory(length / 2);
       const auto from = record.subspan(std::min(first, record.size()));
-      add_points(means_of(length, from).all(), length, in_means, options, octaves);
+      add_points(
+          means_of(detail::in_memory(length), from).all(), length, in_means, options, octaves);
       continue;
     }
     while (2 * r < length) {
-      const std::size_t step = std::min<std::size_t>(8, length / (2 * r));
+      const std::size_t step = std::min<std::size_t>(8, detail::in_memory(length / (2 * r)));
       halves = means_of(step, r == 1 ? record : halves.all());
       r *= step;
     }

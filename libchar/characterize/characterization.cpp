@@ -13,6 +13,7 @@
 
 #include "libchar/characterize/detail/channel_stages.hpp"
 #include "libchar/characterize/detail/longest_segment.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
@@ -263,7 +264,8 @@ LogInfo push_recording(const RecordingView& recording, BlockSink& sink, Progress
   SampleBlock block;
   for (; block.first < log.samples; block.first += block.rows) {
     progress.update(static_cast<double>(block.first) / static_cast<double>(log.samples), "reading");
-    block.rows = std::min(kBlockOfMemory, log.samples - block.first);
+    block.rows =
+        detail::in_memory(std::min<std::uint64_t>(kBlockOfMemory, log.samples - block.first));
     block.channels.clear();
     for (const auto& column : recording.samples)
       block.channels.push_back(column.data() + block.first);

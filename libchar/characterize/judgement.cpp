@@ -167,7 +167,8 @@ struct Judge {
 /// What is recorded is no noise: the channel is of no use, and that it has no fit and no curve needs no saying.
 void drop_what_follows(std::vector<Finding>& found) {
   for (const char* cause : {"no_value", "constant", "counter", "moves_throughout"}) {
-    const auto one = std::ranges::find(found, cause, &Finding::code);
+    const auto one = std::find_if(
+        found.begin(), found.end(), [&](const Finding& finding) { return finding.code == cause; });
     if (one == found.end()) continue;
     one->severity = Severity::bad;
     std::erase_if(found, [](const Finding& other) {

@@ -15,6 +15,7 @@
 #include "libchar/characterize/settings.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/process/free_memory.hpp"
 #include "libchar/core/process/version.hpp"
@@ -100,8 +101,8 @@ std::vector<std::vector<OrderedState>> states_in_order(std::span<const NamedStat
   std::vector<std::vector<OrderedState>> channels;
   for (OrderedState& one : all) {
     check_log(one, all.front(), settings);
-    channels.resize(all.front().head.channels);
-    channels[one.head.channel].push_back(one);
+    channels.resize(detail::in_memory(all.front().head.channels));
+    channels[detail::in_memory(one.head.channel)].push_back(one);
   }
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (channels[c].empty())

@@ -46,6 +46,9 @@ if(NOT LIBCHAR_SANITIZE AND NOT LIBCHAR_FUZZ AND NOT EMSCRIPTEN)
                                 $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>) # needs optimization
   target_link_options(libchar_hardening INTERFACE -pie -Wl,-z,relro,-z,now,-z,noexecstack)
 endif()
+# Of what runs once a run: documents, verbs. Half the time to compile; a page asks for the smallest.
+set(LIBCHAR_COLD -O1 CACHE STRING "optimisation of documents and verbs in a Release build")
+mark_as_advanced(LIBCHAR_COLD)
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   # The same objects for every checkout (paths relative to it), and hits where a precompiled header is used.

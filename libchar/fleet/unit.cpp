@@ -12,6 +12,7 @@
 #include "libchar/core/document/schema.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/process/version.hpp"
 
 namespace libchar {
@@ -137,7 +138,7 @@ FleetUnit parse_unit(std::string_view text, const std::string& path, OptionsTabl
   FleetUnit unit;
   unit.id = at.text("id");
   unit.kind = kind_at(at);
-  unit.device = at.count_or("device", 0);
+  unit.device = detail::in_memory(at.count_or("device", 0));
   unit.log = at.text("log");
   unit.sha256 = at.text("sha256");
   unit.stated = at.flag_or("stated", false);

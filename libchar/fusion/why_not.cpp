@@ -85,7 +85,8 @@ std::string why_not(const Description& description, const Array& array) {
            " learns from a reference; this scene has no reference in a learning window (learning: "
            "[from, to])";
   if (array.learning_samples < needs.learning_samples)
-    return name + " learns from at least " + count(needs.learning_samples, "instant", "instants") +
+    return name + " learns from at least " +
+           count(static_cast<Eigen::Index>(needs.learning_samples), "instant", "instants") +
            "; the learning window has " + std::to_string(array.learning_samples);
   if (needs.fault_free_start && array.fault_free_samples <= 0)
     return name +

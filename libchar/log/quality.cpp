@@ -14,6 +14,7 @@
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -56,7 +57,8 @@ class DistinctValues {
   static constexpr int kLeastBits = 4;
 
   double& slot_of(double value) {
-    std::size_t slot = (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_);
+    std::size_t slot = detail::in_memory(
+        (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_));
     while (slots_[slot] != value && !std::isnan(slots_[slot])) slot = (slot + 1) % slots_.size();
     return slots_[slot];
   }
@@ -651,7 +653,7 @@ struct QualityMeter::State {
                std::size_t n,
                std::size_t breaks);
   void runs(const double* x, const double* before, std::size_t n, bool repeats);
-  bool may_saturate(std::size_t levels) const;
+  bool may_saturate(std::uint64_t levels) const;
   void join(const State& later);
   void join_runs(const State& later, bool direct);
   static void layout(auto& at, auto& s);
@@ -960,8 +962,8 @@ std::vector<Finding> findings_of(const ChannelQuality& q) {
 
 // Ends of a range are told from values that simply stand: of few levels, of a channel that stands
 // most of the time wherever it is (coarse steps, slow changes), of a counter or a clock.
-bool QualityMeter::State::may_saturate(std::size_t levels) const {
-  constexpr std::size_t kFewLevels = 8;
+bool QualityMeter::State::may_saturate(std::uint64_t levels) const {
+  constexpr std::uint64_t kFewLevels = 8;
   if (levels <= kFewLevels || !odd.counter.sentence().empty()) return false;
   const double ends = static_cast<double>(top.count + bottom.count);
   const double others = values.n - ends;

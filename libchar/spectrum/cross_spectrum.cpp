@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segment_choice.hpp"
@@ -70,7 +71,7 @@ PairSums pair_sums(std::span<const double> x,
 }
 
 void fill_bins(const PairSums& sums, double scale, CrossSpectrum& out) {
-  const std::size_t n = out.segment;
+  const std::size_t n = detail::in_memory(out.segment);
   const double segments = out.effective_segments;
   for (std::size_t k = 0; k < sums.both.size(); ++k) {
     const bool edge = k == 0 || 2 * k == n;
@@ -107,7 +108,7 @@ CrossSpectrum cross_spectrum(std::span<const double> x,
   const Layout layout =
       layout_of(choose_segment(presence(x, y), options, out.notes), options.overlap);
   const std::vector<double> window = window_values(options.window, layout.segment);
-  const std::uint64_t count = layout.count(x.size());
+  const std::size_t count = detail::in_memory(layout.count(x.size()));
   std::vector<PairSums> groups((count + layout.group - 1) / layout.group,
                                PairSums(layout.segment / 2 + 1));
   parallel::for_each(0, groups.size(), [&](std::size_t g) {

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segment_choice.hpp"
@@ -61,7 +62,8 @@ Spectrum median_welch(std::span<const double> record, double rate_hz, const Welc
   check_rate(rate_hz);
   std::vector<std::string> notes;
   const Layout layout = layout_of(choose_segment(record, options, notes), options.overlap);
-  const std::uint64_t segments = layout.count(record.size()), bins = layout.segment / 2 + 1;
+  const std::size_t segments = detail::in_memory(layout.count(record.size())),
+                    bins = layout.segment / 2 + 1;
   if (static_cast<double>(segments) * static_cast<double>(bins) * sizeof(double) > kMostPowerBytes)
     throw usage_error("E0872", "`average`")
         .says(

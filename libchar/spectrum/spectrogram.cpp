@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
@@ -54,7 +55,7 @@ Spectrogram spectrogram(std::span<const double> record,
   for (std::size_t k = 0; k < bins; ++k)
     out.frequency_hz.push_back(static_cast<double>(k) * rate_hz /
                                static_cast<double>(layout.segment));
-  out.value.resize(layout.count(record.size()));
+  out.value.resize(detail::in_memory(layout.count(record.size())));
   for (std::size_t i = 0; i < out.value.size(); ++i)
     out.time_s.push_back(
         (static_cast<double>(i * layout.hop) + static_cast<double>(layout.segment) / 2) / rate_hz);

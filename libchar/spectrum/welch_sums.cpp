@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 #include "libchar/spectrum/detail/welch_workspace.hpp"
@@ -127,7 +128,7 @@ WelchSums WelchParts::read_state(StateReader& from) const {
                     sums.end.empty() && sums.head.empty() && sums.tail.empty();
   if (none) return sums;
   const std::uint64_t segments = layout.count(sums.samples);
-  const std::size_t ends = std::min<std::uint64_t>(sums.samples, state_->end_samples());
+  const std::size_t ends = std::min(detail::in_memory(sums.samples), state_->end_samples());
   const bool whole = (sums.used == 0 || !sums.power.empty()) &&
                      (sums.power.empty() || sums.power.size() == layout.segment / 2 + 1) &&
                      sums.used <= segments && sums.dropped == segments - sums.used &&
@@ -142,13 +143,14 @@ WelchSums WelchParts::read_state(StateReader& from) const {
 
 // Paired as WelchStream pairs them: 0 and 1, 2 and 3…, and a last one alone.
 void BlockTransforms::take(std::span<const double> part, BlockTaker& taker) const {
-  HalfSegments halves(2 * block_, workspace_ != nullptr ? &workspace_->state().pools : nullptr);
+  HalfSegments halves(detail::in_memory(2 * block_),
+                      workspace_ != nullptr ? &workspace_->state().pools : nullptr);
   SharedBlocks blocks(block_, taker);
   const auto next = [&]() -> HalfSegments::Half {
     if (part.size() < block_) return {};
     HalfSegments::Half half = halves.half_at(part.data());
-    half.block = blocks.offer(part.first(block_), std::isfinite(half.mean));
-    part = part.subspan(block_);
+    half.block = blocks.offer(part.first(detail::in_memory(block_)), std::isfinite(half.mean));
+    part = part.subspan(detail::in_memory(block_));
     return half;
   };
   while (part.size() >= block_) {

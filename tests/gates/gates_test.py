@@ -109,6 +109,13 @@ class Gates(unittest.TestCase):
             self.write("libchar/fit/more.hpp", f"namespace libchar {{\n{more}\n}}\n")
             self.refused("names", "libchar")
 
+    def test_twice(self):
+        self.write("libchar/fit/one.hpp", "namespace libchar { struct One { int a; }; struct Two; }")
+        self.write("libchar/fit/two.cpp", "namespace libchar { namespace { struct One { int b; }; } struct Two {}; }")
+        self.accepted()
+        self.write("libchar/log/one.hpp", "namespace libchar { struct One { int b; }; }")
+        self.refused("twice", "libchar::One")
+
     def test_eigen(self):
         self.write("libchar/core/numeric/dense.hpp", "#include <Eigen/Core>\n")
         self.accepted()

@@ -1,67 +1,11 @@
 // The page in a browser: files are dropped on it, every request is recorded, and what comes of it is looked at.
 //
-// usage: node browser.js PAGE [--browser chromium|firefox] [--screens FOLDER] [FILE…]     NODE_PATH has playwright-core and axe-core
+// usage: node browser.js PAGE [--browser chromium|firefox] [--only STEP] [--screens FOLDER] [FILE…]     NODE_PATH has playwright-core and axe-core
 // FILE: logs (default: the fixtures). Prints a row per file: state, seconds, heap is the browser's. Exit code 1 where something is wrong.
 "use strict";
 const fs = require("fs"), os = require("os"), path = require("path");
-const playwright = require("playwright-core");
-
-const ROOT = path.resolve(__dirname, "../..");
-const LIMIT_MS = 120000;
-const BROWSERS = { chromium: "/usr/bin/chromium", firefox: "/usr/bin/firefox-esr" };
-const faults = [];
-
-function check(good, what) {
-  if (!good) faults.push(what);
-  if (!good) console.log(`FAULT: ${what}`);
-}
-
-function fixtures() {
-  const found = [];
-  for (const folder of ["arrays", "flight", "npy", "packed", "ros", "known/badinputs/csv", "known/badinputs/npy"]) {
-    const full = path.join(ROOT, "fixtures", folder);
-    for (const name of fs.readdirSync(full).sort()) if (!/\.(py|mjs|md|tsv)$/.test(name)) found.push(path.join(full, name));
-  }
-  return [path.join(ROOT, "fixtures/imu_at_rest.csv"), ...found];
-}
-
-async function opened(browser, page, options = {}) {
-  const context = await browser.newContext({ acceptDownloads: true, ...options });
-  const requests = [];
-  context.on("request", request => {
-    if (!/^(data|blob):|^about:srcdoc/.test(request.url())) requests.push(request.url());
-  });
-  const tab = await context.newPage();
-  const said = [];
-  tab.on("console", message => {
-    if (message.type() === "error") said.push(message.text());
-  });
-  tab.on("pageerror", error => said.push(String(error)));
-  tab.on("dialog", dialog => {
-    said.push(`dialog ${dialog.message()}`);
-    dialog.dismiss();
-  });
-  const begin = Date.now();
-  await tab.goto(`file://${path.resolve(page)}`);
-  await state(tab, ["ready"]);
-  return { tab, context, requests, said, start: Date.now() - begin };
-}
-
-async function state(tab, wanted, limit = LIMIT_MS) {
-  await tab.waitForFunction(states => states.includes(document.documentElement.dataset.state), wanted, { timeout: limit });
-  return tab.evaluate(() => document.documentElement.dataset.state);
-}
-
-/** Drops files and waits for the end; milliseconds to the first number and to the end. */
-async function dropped(tab, files) {
-  const begin = Date.now();
-  await tab.setInputFiles("#logs", files);
-  await tab.waitForFunction(() => document.documentElement.dataset.state !== "ready", null, { timeout: LIMIT_MS });
-  await tab.waitForFunction(() => document.querySelector("#found table, #found .bad, #found .asked, #found .facts"), null, { timeout: LIMIT_MS });
-  const first = Date.now() - begin;
-  const end = await state(tab, ["done", "error"]);
-  return { end, first, all: Date.now() - begin };
-}
+const { ROOT, faults, check, fixtures, opened, dropped, launched } = require("./support.js");
+const { uses } = require("./uses.js");
 
 async function everyFile(browser, page, files) {
   for (const file of files) {
@@ -99,35 +43,6 @@ async function injections(browser, page, folder) {
   check((await tab.evaluate(() => window.pwned)) === undefined, "a script of a document ran");
   check(requests.length === 1, `requests of hostile files: ${requests}`);
   check(!said.some(text => text.startsWith("dialog")), `dialogs: ${said}`);
-  await context.close();
-}
-
-/** The uses, one after the other, from a log at rest. */
-async function uses(browser, page, folder) {
-  const { tab, context, requests, said, start } = await opened(browser, page);
-  const log = path.join(ROOT, "fixtures/imu_at_rest.csv");
-  const { end, first, all } = await dropped(tab, [log]);
-  console.log(`start ${start / 1e3} s, first number ${first / 1e3} s, report ${all / 1e3} s (${path.basename(log)})`);
-  check(end === "done", "the log at rest is characterized");
-  check((await tab.locator("#command").innerText()).startsWith("sensorchar characterize imu_at_rest.csv"), "the command is shown");
-  const run = async (use, fill = async () => {}) => {
-    await tab.getByRole("button", { name: use, exact: true }).first().click();
-    await fill();
-    await tab.locator("#run").click();
-    await tab.waitForFunction(() => document.documentElement.dataset.state !== "working", null, { timeout: LIMIT_MS });
-    const state = await tab.evaluate(() => document.documentElement.dataset.state);
-    check(state === "done", `${use}: ${state}: ${await tab.locator("#error").innerText()}`);
-    console.log(`${use}: ${state}; ${await tab.locator("#command").innerText()}`);
-  };
-  await run("Export for a consumer", () => tab.getByLabel("Axes", { exact: true }).selectOption("z"));
-  await run("Figure");
-  check((await tab.locator("#figures img").count()) === 1, "a figure is shown");
-  await run("Simulate");
-  const [download] = await Promise.all([tab.waitForEvent("download"), tab.locator("#zip").click()]);
-  const zip = path.join(folder, "all.zip");
-  await download.saveAs(zip);
-  check(fs.statSync(zip).size > 1000, "an archive of all files");
-  check(requests.length === 1 && said.length === 0, `the uses: requests ${requests}, console ${said}`);
   await context.close();
 }
 
@@ -175,7 +90,7 @@ async function main() {
   const kind = named("--browser") || "chromium", folder = named("--screens"), only = named("--only");
   const [page, ...files] = words;
   const scratch = fs.mkdtempSync(path.join(os.tmpdir(), "page-"));
-  const browser = await playwright[kind].launch({ executablePath: BROWSERS[kind], args: kind === "chromium" ? ["--no-sandbox", "--disable-gpu"] : [] });
+  const browser = await launched(kind);
   const steps = {
     uses: () => uses(browser, page, scratch),
     injections: () => injections(browser, page, scratch),

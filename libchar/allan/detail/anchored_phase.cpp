@@ -25,13 +25,13 @@ namespace {
 struct DifferenceRun {
   const double* at[4] = {};
   double c[3] = {};
-  std::uint64_t count = 0;
-  std::uint64_t stride = 1;
+  std::size_t count = 0;
+  std::size_t stride = 1;
 };
 
 /// Inlined into each target clone, so that it is compiled for that target.
 template <int kOrder>
-[[gnu::always_inline]] inline double squared(const DifferenceRun& run, std::uint64_t t) {
+[[gnu::always_inline]] inline double squared(const DifferenceRun& run, std::size_t t) {
   const double u = static_cast<double>(static_cast<std::int64_t>(t));
   const double low = run.at[1][t] - run.at[0][t], high = run.at[2][t] - run.at[1][t];
   double d = high - low;
@@ -45,10 +45,10 @@ template <int kOrder>
   const double c0 = run.c[0], c1 = run.c[1], c2 = run.c[2];
   double lane[kLanes] = {};
   Four sum[2] = {}, u[2] = {{0, 1, 2, 3}, {4, 5, 6, 7}};
-  const std::uint64_t whole = run.count / kLanes * kLanes;
-  for (std::uint64_t t = 0; t < whole; t += kLanes)
-    for (std::uint64_t h = 0; h < 2; ++h) {
-      const std::uint64_t at = t + 4 * h;
+  const std::size_t whole = run.count / kLanes * kLanes;
+  for (std::size_t t = 0; t < whole; t += kLanes)
+    for (std::size_t h = 0; h < 2; ++h) {
+      const std::size_t at = t + 4 * h;
       const Four middle = LIBCHAR_FOUR(run.at[1] + at), third = LIBCHAR_FOUR(run.at[2] + at);
       const Four high = third - middle;
       Four d = high - (middle - LIBCHAR_FOUR(run.at[0] + at));
@@ -58,7 +58,7 @@ template <int kOrder>
       sum[h] += d * d;
     }
   std::memcpy(lane, sum, sizeof lane);
-  for (std::uint64_t t = whole; t < run.count; ++t) lane[t % kLanes] += squared<kOrder>(run, t);
+  for (std::size_t t = whole; t < run.count; ++t) lane[t % kLanes] += squared<kOrder>(run, t);
   return sum_of_lanes(lane);
 }
 
@@ -66,7 +66,7 @@ template <int kOrder>
 [[gnu::always_inline]] inline double any_stride(const DifferenceRun& run) {
   if (run.stride == 1) return contiguous<kOrder>(run);
   double lane[kLanes] = {};
-  for (std::uint64_t s = 0; s < run.count; ++s)
+  for (std::size_t s = 0; s < run.count; ++s)
     lane[s % kLanes] += squared<kOrder>(run, s * run.stride);
   return sum_of_lanes(lane);
 }
@@ -79,7 +79,7 @@ LIBCHAR_WIDE_LANES double squared_third_differences(const DifferenceRun& run) {
   return any_stride<3>(run);
 }
 
-constexpr std::uint64_t kBlock = AnchoredPhase::kBlock;
+constexpr std::size_t kBlock = AnchoredPhase::kBlock;
 
 DoubleDouble two_sum(double a, double b) {
   const double s = a + b, t = s - a;
@@ -90,14 +90,14 @@ double finite_or(double value, double instead) {
   return std::isfinite(value) ? value : instead;
 }
 
-AnchoredPhase empty_phase(std::uint64_t points, double scale, bool summed) {
+AnchoredPhase empty_phase(std::size_t points, double scale, bool summed) {
   AnchoredPhase phase;
   phase.points = points;
   phase.scale = scale;
   phase.summed = summed;
   phase.local.assign(points + 1, 0.0);
   if (summed) phase.local2.assign(points + 1, 0.0);
-  const std::uint64_t blocks = points / kBlock + 1;
+  const std::size_t blocks = points / kBlock + 1;
   phase.anchor.resize(blocks);
   phase.base.resize(blocks);
   if (summed) phase.base2.resize(blocks);
@@ -111,9 +111,9 @@ double first_finite(std::span<const double> values, double instead) {
 }
 
 /// Gap-free stretches of finite values; those of a rate record reach one phase point further.
-void find_stretches(std::span<const double> record, std::uint64_t reach, AnchoredPhase& phase) {
-  for (std::uint64_t begin = 0; begin < record.size(); ++begin) {
-    const std::uint64_t end = begin + finite_run(record.subspan(begin));
+void find_stretches(std::span<const double> record, std::size_t reach, AnchoredPhase& phase) {
+  for (std::size_t begin = 0; begin < record.size(); ++begin) {
+    const std::size_t end = begin + finite_run(record.subspan(begin));
     if (end > begin) phase.stretches.push_back({begin, end + reach});
     if (end < record.size()) ++phase.missing;
     begin = end;
@@ -124,11 +124,11 @@ void find_stretches(std::span<const double> record, std::uint64_t reach, Anchore
 void sum_again(AnchoredPhase& phase) {
   const double length = kBlock;
   DoubleDouble base;
-  for (std::uint64_t b = 0; b < phase.base2.size(); ++b) {
+  for (std::size_t b = 0; b < phase.base2.size(); ++b) {
     phase.base2[b] = base;
     double sum = 0;
-    const std::uint64_t end = std::min((b + 1) * kBlock, phase.points + 1);
-    for (std::uint64_t p = b * kBlock; p < end; ++p) {
+    const std::size_t end = std::min((b + 1) * kBlock, phase.points + 1);
+    for (std::size_t p = b * kBlock; p < end; ++p) {
       phase.local2[p] = sum;
       sum += phase.local[p];
     }
@@ -150,8 +150,8 @@ struct Polynomial {
   }
 };
 
-Polynomial polynomial(const AnchoredPhase& phase, std::uint64_t position, bool of_sum) {
-  const std::uint64_t b = position / kBlock;
+Polynomial polynomial(const AnchoredPhase& phase, std::size_t position, bool of_sum) {
+  const std::size_t b = position / kBlock;
   const double j = static_cast<double>(position % kBlock);
   const DoubleDouble a = phase.anchor[b];
   if (!of_sum) return {{phase.base[b] + a * j, a, DoubleDouble{}}};
@@ -206,9 +206,9 @@ AnchoredPhase anchored_phase_of_rate(std::span<const double> rate, bool summed) 
   find_stretches(rate, 1, phase);
   DoubleDouble base;
   double anchor = origin;
-  for (std::uint64_t b = 0; b < phase.base.size(); ++b) {
+  for (std::size_t b = 0; b < phase.base.size(); ++b) {
     // A record of one sample less than whole blocks has its last point in a block without samples.
-    const std::uint64_t first = std::min<std::uint64_t>(b * kBlock, rate.size());
+    const std::size_t first = std::min<std::size_t>(b * kBlock, rate.size());
     const auto block = rate.subspan(first, std::min(kBlock, rate.size() - first));
     anchor = first_finite(block, anchor / scale) * scale;
     double total = 0;
@@ -218,7 +218,7 @@ AnchoredPhase anchored_phase_of_rate(std::span<const double> rate, bool summed) 
     phase.base[b] = base;
     double sum = 0;
     double* local = phase.local.data() + b * kBlock;
-    for (std::uint64_t j = 0; j < block.size(); ++j) {
+    for (std::size_t j = 0; j < block.size(); ++j) {
       local[j] = sum;
       sum += (finite_or(block[j] * scale, anchor) - anchor) - mean;
     }
@@ -234,7 +234,7 @@ AnchoredPhase anchored_phase_of_phase(std::span<const double> points, bool summe
   const double scale = phase.scale, origin = first_finite(points, 0) * scale;
   find_stretches(points, 0, phase);
   double anchor = origin;
-  for (std::uint64_t b = 0; b < phase.base.size(); ++b) {
+  for (std::size_t b = 0; b < phase.base.size(); ++b) {
     const auto block = points.subspan(b * kBlock, std::min(kBlock, points.size() - b * kBlock));
     anchor = first_finite(block, anchor / scale) * scale;
     const double last = block.empty() ? anchor : finite_or(block.back() * scale, anchor);
@@ -243,7 +243,7 @@ AnchoredPhase anchored_phase_of_phase(std::span<const double> points, bool summe
     const float slope = static_cast<float>((last - anchor) / static_cast<double>(kBlock));
     phase.base[b] = two_sum(anchor, -origin);
     phase.anchor[b] = {static_cast<double>(slope), 0};
-    for (std::uint64_t j = 0; j < block.size(); ++j)
+    for (std::size_t j = 0; j < block.size(); ++j)
       phase.local[b * kBlock + j] = (finite_or(block[j] * scale, anchor) - anchor) -
                                     static_cast<double>(j) * static_cast<double>(slope);
   }
@@ -254,18 +254,18 @@ AnchoredPhase anchored_phase_of_phase(std::span<const double> points, bool summe
 double sum_of_squares(const AnchoredPhase& phase,
                       int order,
                       bool of_sum,
-                      std::uint64_t m,
-                      std::uint64_t first,
-                      std::uint64_t last,
-                      std::uint64_t stride) {
+                      std::size_t m,
+                      std::size_t first,
+                      std::size_t last,
+                      std::size_t stride) {
   const std::vector<double>& local = of_sum ? phase.local2 : phase.local;
   double sum = 0;
-  for (std::uint64_t i = first; i < last;) {
+  for (std::size_t i = first; i < last;) {
     DifferenceRun run;
     Polynomial p;
-    std::uint64_t room = last - i;  // starts until one of the positions enters its next block
+    std::size_t room = last - i;  // starts until one of the positions enters its next block
     for (int k = 0; k <= order; ++k) {
-      const std::uint64_t position = i + static_cast<std::uint64_t>(k) * m;
+      const std::size_t position = i + static_cast<std::size_t>(k) * m;
       p.add(kWeights[order - 2][k], polynomial(phase, position, of_sum), of_sum);
       run.at[k] = local.data() + position;
       room = std::min(room, kBlock - position % kBlock);

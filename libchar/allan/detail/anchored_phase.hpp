@@ -17,7 +17,7 @@ DoubleDouble operator*(DoubleDouble a, double k);
 
 /// Half-open range of indices.
 struct IndexRange {
-  std::uint64_t begin = 0, end = 0;
+  std::size_t begin = 0, end = 0;
 };
 
 /// Phase x_p = y_0 + … + y_{p-1} of a rate record (or a phase record itself) and, for the modified
@@ -29,14 +29,14 @@ struct IndexRange {
 /// most L deviations from a neighbour, so an offset cancels before anything is added, and a drift
 /// up to its change within one block.
 struct AnchoredPhase {
-  static constexpr std::uint64_t kBlock = 1024;  // L
-  std::uint64_t points = 0;                      ///< of x; W has one more
-  double scale = 1;                              ///< power of two by which all was multiplied
-  bool summed = false;                           ///< local2 and W are there
+  static constexpr std::size_t kBlock = 1024;  // L
+  std::size_t points = 0;                      ///< of x; W has one more
+  double scale = 1;                            ///< power of two by which all was multiplied
+  bool summed = false;                         ///< local2 and W are there
   std::vector<double> local, local2;
   std::vector<DoubleDouble> anchor, base, base2;  ///< A_b, X_b, W_b
   std::vector<IndexRange> stretches;              ///< of phase points between missing samples
-  std::uint64_t missing = 0;
+  std::size_t missing = 0;
 };
 
 /// A power of two that brings the largest deviation from the first sample near 1, so that squares
@@ -52,9 +52,9 @@ AnchoredPhase anchored_phase_of_phase(std::span<const double> phase, bool summed
 double sum_of_squares(const AnchoredPhase& phase,
                       int order,
                       bool of_sum,
-                      std::uint64_t m,
-                      std::uint64_t first,
-                      std::uint64_t last,
-                      std::uint64_t stride);
+                      std::size_t m,
+                      std::size_t first,
+                      std::size_t last,
+                      std::size_t stride);
 
 }  // namespace libchar

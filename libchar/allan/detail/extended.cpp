@@ -102,18 +102,18 @@ double mean_square(const WindowSums& p, std::size_t m) {
 FamilySum window_squares(const FamilyInput& input,
                          const IndexRange& stretch,
                          bool of_phase,
-                         std::uint64_t m,
-                         std::uint64_t starts,
-                         std::uint64_t stride) {
-  const std::uint64_t block = std::clamp<std::uint64_t>(3 * m, 16, 48);
+                         std::size_t m,
+                         std::size_t starts,
+                         std::size_t stride) {
+  const std::size_t block = std::clamp<std::size_t>(3 * m, 16, 48);
   return over_blocks(
-      stretch.begin, starts, stride, block, [&](std::uint64_t first, std::uint64_t count) {
+      stretch.begin, starts, stride, block, [&](std::size_t first, std::size_t count) {
         std::vector<double> series((count - 1) * stride + 3 * m), sum(series.size() + 1);
         of_phase ? local_phase(input, first, series) : local_rate(input, first, series);
         for (std::size_t j = 0; j < series.size(); ++j) sum[j + 1] = sum[j] + series[j];
         WindowSums window{std::vector<double>(3 * m + 1), std::vector<double>(3 * m + 1)};
         double squares = 0;
-        for (std::uint64_t k = 0; k < count; ++k) {
+        for (std::size_t k = 0; k < count; ++k) {
           window_sums(sum, k * stride, m, window);
           squares += mean_square(window, m);
         }
@@ -122,11 +122,11 @@ FamilySum window_squares(const FamilyInput& input,
 }
 
 /// Third differences at m = 1, where reflection would add nothing but a factor.
-double hadamard_squares(const FamilyInput& input, std::uint64_t first, std::uint64_t count) {
+double hadamard_squares(const FamilyInput& input, std::size_t first, std::size_t count) {
   std::vector<double> y(count + 2);
   local_rate(input, first, y);
   double squares = 0;
-  for (std::uint64_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const double d = (y[i + 2] - y[i + 1]) - (y[i + 1] - y[i]);
     squares += d * d;
   }
@@ -135,21 +135,21 @@ double hadamard_squares(const FamilyInput& input, std::uint64_t first, std::uint
 
 AllanPoint extended_point(const FamilyInput& input,
                           const DeviationRow& row,
-                          std::uint64_t m,
+                          std::size_t m,
                           bool& spaced) {
   const IndexRange& stretch = input.stretches.front();
   const double tau_s = static_cast<double>(m) * input.dt_s;
-  const std::uint64_t length = row.of_sum ? input.points(stretch) : input.rates(stretch);
+  const std::size_t length = row.of_sum ? input.points(stretch) : input.rates(stretch);
   if (length < 3 * m) return family_point(input, m, tau_s, 1, {});
-  const std::uint64_t starts = length - 3 * m + 1;
-  const std::uint64_t stride = family_stride(input, m, starts, 6 * m);
+  const std::size_t starts = length - 3 * m + 1;
+  const std::size_t stride = family_stride(input, m, starts, 6 * m);
   spaced = stride > 1;
   FamilySum sum = !row.of_sum && m == 1
                       ? over_blocks(stretch.begin,
                                     starts,
                                     1,
                                     512,
-                                    [&](std::uint64_t first, std::uint64_t n) {
+                                    [&](std::size_t first, std::size_t n) {
                                       return hadamard_squares(input, first, n);
                                     })
                       : window_squares(input, stretch, row.of_sum, m, starts, stride);
@@ -170,7 +170,7 @@ std::vector<AllanPoint> extended_points(const FamilyInput& input,
   std::vector<char> spaced(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
     bool one = false;
-    points[k] = extended_point(input, row, factors[k], one);
+    points[k] = extended_point(input, row, detail::in_memory(factors[k]), one);
     spaced[k] = one ? 1 : 0;
   });
   note_stride(static_cast<std::uint64_t>(std::count(spaced.begin(), spaced.end(), 1)), notes);

@@ -12,7 +12,7 @@ std::uint64_t last_allan_factor(std::uint64_t samples) {
   return samples / 5;
 }
 
-void local_phase(const FamilyInput& input, std::uint64_t first, std::span<double> out) {
+void local_phase(const FamilyInput& input, std::size_t first, std::span<double> out) {
   const double* v = input.record.data() + first;
   const double origin = v[0] * input.scale;
   const auto last = static_cast<double>(out.size() - 1);
@@ -33,7 +33,7 @@ void local_phase(const FamilyInput& input, std::uint64_t first, std::span<double
   out[out.size() - 1] = sum;
 }
 
-void local_phase_with_offset(const FamilyInput& input, std::uint64_t first, std::span<double> out) {
+void local_phase_with_offset(const FamilyInput& input, std::size_t first, std::span<double> out) {
   const double* v = input.record.data() + first;
   double sum = 0;
   for (std::size_t j = 0; j < out.size(); ++j) {
@@ -42,7 +42,7 @@ void local_phase_with_offset(const FamilyInput& input, std::uint64_t first, std:
   }
 }
 
-void local_rate(const FamilyInput& input, std::uint64_t first, std::span<double> out) {
+void local_rate(const FamilyInput& input, std::size_t first, std::span<double> out) {
   const double* v = input.record.data() + first;
   const auto at = [&](std::size_t j) {
     return input.data == DataKind::rate ? v[j] * input.scale
@@ -65,15 +65,16 @@ AllanPoint family_point(
   return point;
 }
 
-std::uint64_t family_stride(const FamilyInput& input,
-                            std::uint64_t m,
-                            std::uint64_t starts,
-                            std::uint64_t work) {
+std::size_t family_stride(const FamilyInput& input,
+                          std::uint64_t m,
+                          std::uint64_t starts,
+                          std::uint64_t work) {
   const double all = static_cast<double>(starts) * static_cast<double>(work);
   if (input.work_a_point == 0 || all <= static_cast<double>(input.work_a_point)) return 1;
   const auto wanted =
       static_cast<std::uint64_t>(std::ceil(all / static_cast<double>(input.work_a_point)));
-  return std::clamp<std::uint64_t>(wanted, 1, std::max<std::uint64_t>(1, m / 16));
+  return detail::in_memory(
+      std::clamp<std::uint64_t>(wanted, 1, std::max<std::uint64_t>(1, m / 16)));
 }
 
 void note_stride(std::uint64_t points, std::vector<std::string>& notes) {

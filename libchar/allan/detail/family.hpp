@@ -10,6 +10,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/anchored_phase.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar {
@@ -21,10 +22,10 @@ struct FamilyInput {
   double scale = 1;                   ///< power of two by which all is multiplied
   std::vector<IndexRange> stretches;  ///< of samples of the record, none missing
   std::uint64_t work_a_point = 0;     ///< operations; beyond them starts are spaced, 0: never
-  std::uint64_t points(const IndexRange& s) const {  ///< of phase, in a stretch
+  std::size_t points(const IndexRange& s) const {  ///< of phase, in a stretch
     return s.end - s.begin + (data == DataKind::rate ? 1 : 0);
   }
-  std::uint64_t rates(const IndexRange& s) const { return points(s) - 1; }
+  std::size_t rates(const IndexRange& s) const { return points(s) - 1; }
 };
 
 /// Points at the ascending `factors`; no terms where none fits.
@@ -57,11 +58,11 @@ std::uint64_t last_allan_factor(std::uint64_t samples);
 /// Phase points first, first + 1 … of a stretch, less a straight line (of which the statistics see
 /// nothing), times the scale. The sum begins anew here: what a long record adds up to costs its
 /// differences no digits.
-void local_phase(const FamilyInput& input, std::uint64_t first, std::span<double> out);
+void local_phase(const FamilyInput& input, std::size_t first, std::span<double> out);
 /// The same with the line, which begins at 0.
-void local_phase_with_offset(const FamilyInput& input, std::uint64_t first, std::span<double> out);
+void local_phase_with_offset(const FamilyInput& input, std::size_t first, std::span<double> out);
 /// Rate samples first, first + 1 … less the first of them, times the scale; of phase its differences.
-void local_rate(const FamilyInput& input, std::uint64_t first, std::span<double> out);
+void local_rate(const FamilyInput& input, std::size_t first, std::span<double> out);
 
 struct FamilySum {
   double sum = 0;
@@ -74,24 +75,24 @@ AllanPoint family_point(
 
 /// Every how manieth start is used, so that `starts` of `work` operations each cost no more than is
 /// allowed: at most m/16, which leaves the degrees of freedom as they are to a hundredth.
-std::uint64_t family_stride(const FamilyInput& input,
-                            std::uint64_t m,
-                            std::uint64_t starts,
-                            std::uint64_t work);
+std::size_t family_stride(const FamilyInput& input,
+                          std::uint64_t m,
+                          std::uint64_t starts,
+                          std::uint64_t work);
 void note_stride(std::uint64_t points, std::vector<std::string>& notes);
 
 /// Sum over blocks of `block` term starts in `stretch`: `of_block(first, count)` adds up the starts
 /// first, first + stride …
 template <typename OfBlock>
-FamilySum over_blocks(std::uint64_t begin,
-                      std::uint64_t starts,
-                      std::uint64_t stride,
-                      std::uint64_t block,
+FamilySum over_blocks(std::size_t begin,
+                      std::size_t starts,
+                      std::size_t stride,
+                      std::size_t block,
                       const OfBlock& of_block) {
-  const std::uint64_t used = (starts + stride - 1) / stride;
+  const std::size_t used = (starts + stride - 1) / stride;
   std::vector<double> part((used + block - 1) / block);
   parallel::for_each(0, part.size(), [&](std::size_t k) {
-    const std::uint64_t first = k * block;
+    const std::size_t first = k * block;
     part[k] = of_block(begin + first * stride, std::min(block, used - first));
   });
   FamilySum all;

@@ -17,12 +17,12 @@
 namespace libchar {
 namespace {
 
-constexpr std::uint64_t kTermByTerm = 16;  // of so few points sums beat differences of sums
+constexpr std::size_t kTermByTerm = 16;  // of so few points sums beat differences of sums
 
 /// sum_k ((m-1)/2 - k) x_{i+k}, window by window.
 class Slopes {
  public:
-  Slopes(std::span<const double> x, std::uint64_t m) : x_(x), m_(m) {
+  Slopes(std::span<const double> x, std::size_t m) : x_(x), m_(m) {
     if (m <= kTermByTerm) return;
     sum_.reserve(x.size() + 1);
     moment_.reserve(x.size() + 1);
@@ -47,26 +47,26 @@ class Slopes {
 
  private:
   std::span<const double> x_;
-  std::uint64_t m_;
+  std::size_t m_;
   std::vector<double> sum_, moment_;
 };
 
 double squared_slopes(const FamilyInput& input,
-                      std::uint64_t m,
-                      std::uint64_t first,
-                      std::uint64_t count) {
+                      std::size_t m,
+                      std::size_t first,
+                      std::size_t count) {
   std::vector<double> x(count + 2 * m);
   local_phase(input, first, x);
   double sum = 0;
   if (m == 1) {
-    for (std::uint64_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       const double d = (x[i + 2] - x[i + 1]) - (x[i + 1] - x[i]);
       sum += d * d;
     }
     return sum;
   }
   const Slopes slopes(x, m);
-  for (std::uint64_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const double d = slopes.at(i) - slopes.at(i + m);
     sum += d * d;
   }
@@ -81,7 +81,7 @@ std::vector<AllanPoint> parabolic_points(const FamilyInput& input,
                                          std::vector<std::string>&) {
   std::vector<AllanPoint> points(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
-    const std::uint64_t m = factors[k];
+    const std::size_t m = detail::in_memory(factors[k]);
     FamilySum total;
     for (const IndexRange& s : input.stretches) {
       if (input.points(s) <= 2 * m) continue;
@@ -89,8 +89,8 @@ std::vector<AllanPoint> parabolic_points(const FamilyInput& input,
           s.begin,
           input.points(s) - 2 * m,
           1,
-          std::max<std::uint64_t>(512, 2 * m),
-          [&](std::uint64_t first, std::uint64_t n) { return squared_slopes(input, m, first, n); });
+          std::max<std::size_t>(512, 2 * m),
+          [&](std::size_t first, std::size_t n) { return squared_slopes(input, m, first, n); });
       total.sum += sum.sum;
       total.terms += sum.terms;
     }

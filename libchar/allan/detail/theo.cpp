@@ -26,7 +26,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::uint64_t kSmallest = 10, kBlockOfTheo = 256, kFewRatios = 64;
+constexpr std::size_t kSmallest = 10, kBlockOfTheo = 256, kFewRatios = 64;
 constexpr double kRatioWork = 1 << 30;
 
 /// sum_d w_d (ends - (left_d + right_d))^2, d = 0 … count - 1, in eight lanes.
@@ -51,24 +51,24 @@ LIBCHAR_WIDE_LANES double weighted_squares(
 
 FamilySum theo_sum(const FamilyInput& input,
                    const IndexRange& stretch,
-                   std::uint64_t m,
-                   std::uint64_t stride) {
-  const std::uint64_t half = m / 2;
+                   std::size_t m,
+                   std::size_t stride) {
+  const std::size_t half = m / 2;
   std::vector<double> w(half);
-  for (std::uint64_t d = 0; d < half; ++d) w[d] = 1 / static_cast<double>(half - d);
+  for (std::size_t d = 0; d < half; ++d) w[d] = 1 / static_cast<double>(half - d);
   return over_blocks(
       stretch.begin,
       input.points(stretch) - m,
       stride,
       kBlockOfTheo,
-      [&](std::uint64_t first, std::uint64_t count) {
-        const std::uint64_t length = (count - 1) * stride + m + 1;
+      [&](std::size_t first, std::size_t count) {
+        const std::size_t length = (count - 1) * stride + m + 1;
         std::vector<double> x(length), turned(length);
         local_phase(input, first, x);
         std::reverse_copy(x.begin(), x.end(), turned.begin());
         double sum = 0;
-        for (std::uint64_t k = 0; k < count; ++k) {
-          const std::uint64_t i = k * stride, c = i + half;
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::size_t i = k * stride, c = i + half;
           sum += weighted_squares(
               turned.data() + (length - 1 - c), x.data() + c, w.data(), half, x[i] + x[i + m]);
         }
@@ -78,11 +78,11 @@ FamilySum theo_sum(const FamilyInput& input,
 
 AllanPoint theo1_point(const FamilyInput& input,
                        const IndexRange& stretch,
-                       std::uint64_t m,
+                       std::size_t m,
                        bool& spaced) {
   const double tau_s = 0.75 * static_cast<double>(m) * input.dt_s;
   if (input.points(stretch) <= m) return family_point(input, m, tau_s, 1, {});
-  const std::uint64_t stride = family_stride(input, m, input.points(stretch) - m, m / 2);
+  const std::size_t stride = family_stride(input, m, input.points(stretch) - m, m / 2);
   spaced = stride > 1;
   AllanPoint point = family_point(input, m, tau_s, 0.75, theo_sum(input, stretch, m, stride));
   point.terms *= m / 2;
@@ -90,18 +90,18 @@ AllanPoint theo1_point(const FamilyInput& input,
 }
 
 /// Overlapping Allan deviation of the stretch.
-AllanPoint allan_point(const FamilyInput& input, const IndexRange& stretch, std::uint64_t m) {
+AllanPoint allan_point(const FamilyInput& input, const IndexRange& stretch, std::size_t m) {
   const double tau_s = static_cast<double>(m) * input.dt_s;
   if (input.points(stretch) <= 2 * m) return family_point(input, m, tau_s, 1, {});
   const FamilySum sum = over_blocks(stretch.begin,
                                     input.points(stretch) - 2 * m,
                                     1,
-                                    std::max<std::uint64_t>(512, 2 * m),
-                                    [&](std::uint64_t first, std::uint64_t count) {
+                                    std::max<std::size_t>(512, 2 * m),
+                                    [&](std::size_t first, std::size_t count) {
                                       std::vector<double> x(count + 2 * m);
                                       local_phase(input, first, x);
                                       double squares = 0;
-                                      for (std::uint64_t i = 0; i < count; ++i) {
+                                      for (std::size_t i = 0; i < count; ++i) {
                                         const double d =
                                             (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i]);
                                         squares += d * d;
@@ -113,17 +113,17 @@ AllanPoint allan_point(const FamilyInput& input, const IndexRange& stretch, std:
 
 /// sqrt(mean AVAR / Theo1^2), by which Theo1 is multiplied; 1 where both are zero throughout.
 double bias_removal(FamilyInput input, const IndexRange& stretch, std::vector<std::string>& notes) {
-  const std::uint64_t last = input.points(stretch) / 6 - 3;
+  const std::size_t last = input.points(stretch) / 6 - 3;
   const double length = static_cast<double>(input.points(stretch));
   const bool all = length * length * length / 64 <= kRatioWork || last < kFewRatios;
-  const std::uint64_t used = all ? last + 1 : kFewRatios;
+  const std::size_t used = all ? last + 1 : kFewRatios;
   input.work_a_point = all ? 0 : static_cast<std::uint64_t>(kRatioWork) / kFewRatios;
   if (!all)
     notes.push_back("the bias of Theo1 is taken from " + std::to_string(kFewRatios) + " of the " +
                     std::to_string(last + 1) + " ratios, evenly spaced");
   std::vector<double> ratio(used);
   parallel::for_each(0, used, [&](std::size_t k) {
-    const std::uint64_t i = all ? k : k * last / (used - 1);
+    const std::size_t i = all ? k : detail::in_memory(std::uint64_t{k} * last / (used - 1));
     bool spaced = false;
     const double theo = theo1_point(input, stretch, 12 + 4 * i, spaced).deviation;
     const double allan = allan_point(input, stretch, 9 + 3 * i).deviation;
@@ -150,11 +150,11 @@ std::vector<AllanPoint> theo_points(const FamilyInput& input,
   std::vector<char> spaced(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
     if (factors[k] <= allan_up_to) {
-      points[k] = allan_point(input, stretch, factors[k]);
+      points[k] = allan_point(input, stretch, detail::in_memory(factors[k]));
       return;
     }
     bool one = false;
-    points[k] = theo1_point(input, stretch, factors[k], one);
+    points[k] = theo1_point(input, stretch, detail::in_memory(factors[k]), one);
     points[k].deviation *= removal;
     spaced[k] = one ? 1 : 0;
   });

@@ -23,7 +23,7 @@ std::vector<double> phase_of_stretches(const FamilyInput& input) {
   std::vector<double> x(input.record.size() + (input.data == DataKind::rate ? 1 : 0));
   for (const IndexRange& s : input.stretches) {
     DoubleDouble sum;
-    for (std::uint64_t p = s.begin; p < s.begin + input.points(s); ++p) {
+    for (std::size_t p = s.begin; p < s.begin + input.points(s); ++p) {
       if (input.data == DataKind::phase)
         x[p] = input.record[p] * input.scale - input.record[s.begin] * input.scale;
       else
@@ -40,17 +40,17 @@ class Extremes {
   explicit Extremes(std::vector<double> x) : high_(x), low_(std::move(x)) {}
 
   /// Largest span of windows of `points` points that start at begin … end - 1.
-  double largest_span(std::uint64_t points, std::uint64_t begin, std::uint64_t end) const {
-    const std::uint64_t shift = points - width_;
+  double largest_span(std::size_t points, std::size_t begin, std::size_t end) const {
+    const std::size_t shift = points - width_;
     double most = 0;
-    for (std::uint64_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i)
       most =
           std::max(most, std::max(high_[i], high_[i + shift]) - std::min(low_[i], low_[i + shift]));
     return most;
   }
-  void widen(std::uint64_t points) {
+  void widen(std::size_t points) {
     for (; 2 * width_ <= points; width_ *= 2)
-      for (std::uint64_t i = 0; i + width_ < high_.size(); ++i) {
+      for (std::size_t i = 0; i + width_ < high_.size(); ++i) {
         high_[i] = std::max(high_[i], high_[i + width_]);
         low_[i] = std::min(low_[i], low_[i + width_]);
       }
@@ -58,7 +58,7 @@ class Extremes {
 
  private:
   std::vector<double> high_, low_;
-  std::uint64_t width_ = 1;
+  std::size_t width_ = 1;
 };
 
 std::vector<AllanPoint> largest_intervals(const FamilyInput& input,
@@ -66,7 +66,7 @@ std::vector<AllanPoint> largest_intervals(const FamilyInput& input,
   std::vector<AllanPoint> points(factors.size());
   Extremes extremes(phase_of_stretches(input));
   for (std::size_t k = 0; k < factors.size(); ++k) {
-    const std::uint64_t m = factors[k];
+    const std::size_t m = detail::in_memory(factors[k]);
     extremes.widen(m + 1);
     double most = 0;
     AllanPoint& point = points[k];
@@ -81,7 +81,7 @@ std::vector<AllanPoint> largest_intervals(const FamilyInput& input,
   return points;
 }
 
-AllanPoint mean_square_interval(const FamilyInput& input, std::uint64_t m) {
+AllanPoint mean_square_interval(const FamilyInput& input, std::size_t m) {
   AllanPoint point;
   point.m = m;
   FamilySum total;
@@ -90,12 +90,12 @@ AllanPoint mean_square_interval(const FamilyInput& input, std::uint64_t m) {
     const FamilySum sum = over_blocks(s.begin,
                                       input.points(s) - m,
                                       1,
-                                      std::max<std::uint64_t>(512, m),
-                                      [&](std::uint64_t first, std::uint64_t count) {
+                                      std::max<std::size_t>(512, m),
+                                      [&](std::size_t first, std::size_t count) {
                                         std::vector<double> x(count + m);
                                         local_phase_with_offset(input, first, x);
                                         double squares = 0;
-                                        for (std::uint64_t i = 0; i < count; ++i)
+                                        for (std::size_t i = 0; i < count; ++i)
                                           squares += (x[i + m] - x[i]) * (x[i + m] - x[i]);
                                         return squares;
                                       });
@@ -118,7 +118,7 @@ std::vector<AllanPoint> interval_points(const FamilyInput& input,
     points = largest_intervals(input, factors);
   } else {
     parallel::for_each(0, factors.size(), [&](std::size_t k) {
-      points[k] = mean_square_interval(input, factors[k]);
+      points[k] = mean_square_interval(input, detail::in_memory(factors[k]));
     });
   }
   for (AllanPoint& point : points) {

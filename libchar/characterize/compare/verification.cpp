@@ -11,6 +11,7 @@
 #include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
@@ -38,7 +39,7 @@ class MeansAdded {
   MeansAdded(const NoiseFit& fit, const ArraySimulation& simulation) {
     const bool moved = fit.temperature && fit.temperature->order > 0;
     if (fit.events.empty() && !moved) return;
-    less_.assign(simulation.samples, 0.0);
+    less_.assign(detail::in_memory(simulation.samples), 0.0);
     subtract_events(fit.events, simulation.rate_hz, less_);
     if (moved) add_temperature_effect(*fit.temperature, -1, less_);
   }

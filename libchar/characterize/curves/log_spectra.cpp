@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libchar/characterize/detail/longest_segment.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
@@ -157,7 +158,7 @@ LogSpectra finished(LogSpectra result, const LogSpectraOptions& options) {
         .hint(segment_given(options) ? "try a shorter `segment`" : "");
   for (ChannelSpectrum& c : result.channels) {
     if (options.lines) c.lines = find_lines(c.spectrum);
-    if (options.bins > 0) c.spectrum = log_binned(c.spectrum, options.bins);
+    if (options.bins > 0) c.spectrum = log_binned(c.spectrum, detail::in_memory(options.bins));
   }
   return result;
 }

@@ -31,8 +31,25 @@ constexpr std::array<std::uint32_t, 64> kRound = {
 
 std::uint32_t big_endian(const char* bytes) {
   std::uint32_t word = 0;
-  for (std::size_t i = 0; i < 4; ++i) word = word << 8U | static_cast<unsigned char>(bytes[i]);
-  return word;
+  std::memcpy(&word, bytes, sizeof word);
+  return std::endian::native == std::endian::big ? word : __builtin_bswap32(word);
+}
+
+/// A round (2): of the eight words two change, which are d and h here.
+[[gnu::always_inline]] inline void round(std::uint32_t a,
+                                         std::uint32_t b,
+                                         std::uint32_t c,
+                                         std::uint32_t& d,
+                                         std::uint32_t e,
+                                         std::uint32_t f,
+                                         std::uint32_t g,
+                                         std::uint32_t& h,
+                                         std::uint32_t k_and_w) {
+  const std::uint32_t s1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
+  const std::uint32_t s0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
+  h += s1 + (g ^ (e & (f ^ g))) + k_and_w;
+  d += h;
+  h += s0 + ((a & b) | (c & (a | b)));
 }
 
 void add_block(const char* block, Words& hash) {
@@ -45,19 +62,16 @@ void add_block(const char* block, Words& hash) {
     w[t] = s1 + w[t - 7] + s0 + w[t - 16];
   }
   auto [a, b, c, d, e, f, g, h] = hash;
-  for (std::size_t t = 0; t < 64; ++t) {  // (2)
-    const std::uint32_t s1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
-    const std::uint32_t s0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
-    const std::uint32_t t1 = h + s1 + ((e & f) ^ (~e & g)) + kRound[t] + w[t];
-    const std::uint32_t t2 = s0 + ((a & b) ^ (a & c) ^ (b & c));
-    h = g;
-    g = f;
-    f = e;
-    e = d + t1;
-    d = c;
-    c = b;
-    b = a;
-    a = t1 + t2;
+  // (2), eight rounds a turn: after them each word is where it was, and none has been moved.
+  for (std::size_t t = 0; t < 64; t += 8) {
+    round(a, b, c, d, e, f, g, h, kRound[t] + w[t]);
+    round(h, a, b, c, d, e, f, g, kRound[t + 1] + w[t + 1]);
+    round(g, h, a, b, c, d, e, f, kRound[t + 2] + w[t + 2]);
+    round(f, g, h, a, b, c, d, e, kRound[t + 3] + w[t + 3]);
+    round(e, f, g, h, a, b, c, d, kRound[t + 4] + w[t + 4]);
+    round(d, e, f, g, h, a, b, c, kRound[t + 5] + w[t + 5]);
+    round(c, d, e, f, g, h, a, b, kRound[t + 6] + w[t + 6]);
+    round(b, c, d, e, f, g, h, a, kRound[t + 7] + w[t + 7]);
   }
   const Words more = {a, b, c, d, e, f, g, h};
   for (std::size_t i = 0; i < hash.size(); ++i) hash[i] += more[i];

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libchar/core/numeric/state_archive.hpp"
+#include "libchar/core/numeric/whole.hpp"
 
 namespace libchar::detail {
 
@@ -26,7 +27,7 @@ struct Halving {
 
   void push(std::span<const double> samples) {
     while (!samples.empty()) {
-      const std::size_t some = std::min<std::uint64_t>(samples.size(), length - filled);
+      const std::size_t some = std::min(samples.size(), detail::in_memory(length - filled));
       open.take(samples.first(some));
       filled += some;
       samples = samples.subspan(some);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libchar/core/file/sha256.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 
 namespace libchar {
@@ -125,7 +126,7 @@ StateReader::StateReader(std::string_view bytes,
         .hint(kAgain);
   if (!whole)
     throw input_error("E0723", name_).says("is damaged: its digest is another one").hint(kAgain);
-  rest_ = bytes.substr(kHead, length);
+  rest_ = bytes.substr(kHead, detail::in_memory(length));
   if (const std::string is = text(); is != kind)
     throw input_error("E0723", name_).says("is a state of {}, not of {}", is, kind);
   if (found != version)

@@ -1,8 +1,11 @@
 #pragma once
-// From a double to a whole number: a bare cast of one that the type does not hold may give anything.
+// From one kind of number to a whole one: a bare cast of one that the type does not hold may give anything.
 
 #include <algorithm>
 #include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 
 namespace libchar {
 
@@ -13,5 +16,14 @@ Whole clamped_whole(double value, Whole lowest, Whole highest) {
   if (value >= static_cast<double>(highest)) return highest;
   return static_cast<Whole>(value);
 }
+
+namespace detail {
+/// A number of things in memory: where sizes have 32 bits (a web page), the largest of them for all
+/// that memory could not hold.
+constexpr std::size_t in_memory(std::uint64_t count) {
+  return static_cast<std::size_t>(
+      std::min<std::uint64_t>(count, std::numeric_limits<std::size_t>::max()));
+}
+}  // namespace detail
 
 }  // namespace libchar

@@ -69,7 +69,7 @@ std::string absence(const AxisNumber& n) {
                                           : "no value";
 }
 
-Figure one_axis(const AxisNumber& n, Absent absent) {
+ExportFigure one_axis(const AxisNumber& n, Absent absent) {
   if (n.driven)
     return {n.value,
             false,
@@ -148,15 +148,15 @@ const PlacedModel& representative(const SensorTriad& triad, const ExportOptions&
   return *triad.axis[only_axis(options).value_or(0)];
 }
 
-Figure scalar_figure(const SensorTriad& triad,
-                     Term term,
-                     Absent absent,
-                     const ExportOptions& options) {
+ExportFigure scalar_figure(const SensorTriad& triad,
+                           Term term,
+                           Absent absent,
+                           const ExportOptions& options) {
   const auto only = only_axis(options);
   require_axes(triad, only);
   const auto numbers = numbers_of(triad, term, options.inflate);
   if (triad.shared || only) {
-    Figure figure = one_axis(numbers[only.value_or(0)], absent);
+    ExportFigure figure = one_axis(numbers[only.value_or(0)], absent);
     if (only && !triad.shared)
       figure.origin = fmt::format(
           "{} axis{}{}", kAxisNames[*only], figure.origin.empty() ? "" : "; ", figure.origin);
@@ -180,12 +180,12 @@ Figure scalar_figure(const SensorTriad& triad,
   return {std::nullopt, false, "unknown on every axis"};
 }
 
-std::array<Figure, 3> axis_figures(const SensorTriad& triad,
-                                   Term term,
-                                   Absent absent,
-                                   const ExportOptions& options) {
+std::array<ExportFigure, 3> axis_figures(const SensorTriad& triad,
+                                         Term term,
+                                         Absent absent,
+                                         const ExportOptions& options) {
   if (options.axes != AxisChoice::automatic || triad.shared) {
-    const Figure one = scalar_figure(triad, term, absent, options);
+    const ExportFigure one = scalar_figure(triad, term, absent, options);
     return {one, one, one};
   }
   require_axes(triad, std::nullopt);
@@ -210,12 +210,12 @@ std::string walk_of_floor(const SensorTriad& triad, const ExportOptions& options
 
 }  // namespace
 
-Figure positive_figure(const SensorTriad& triad,
-                       Term term,
-                       const ExportOptions& options,
-                       const std::string& consumer,
-                       const std::string& key) {
-  Figure figure = scalar_figure(triad, term, Absent::limit, options);
+ExportFigure positive_figure(const SensorTriad& triad,
+                             Term term,
+                             const ExportOptions& options,
+                             const std::string& consumer,
+                             const std::string& key) {
+  ExportFigure figure = scalar_figure(triad, term, Absent::limit, options);
   if (figure.value) return figure;
   const TermName& name = kTermNames[static_cast<std::size_t>(term)];
   throw input_error("E0587", representative(triad, options).model->channel)
@@ -325,7 +325,7 @@ double rate_of(const SensorTriad& triad, std::vector<std::string>& notes) {
   return rate;
 }
 
-const Figure& figure_of(const ImuFigures& f, std::string_view sensor, Term term) {
+const ExportFigure& figure_of(const ImuFigures& f, std::string_view sensor, Term term) {
   const bool walk = term == Term::walk;
   if (sensor == "gyroscope") return walk ? f.gyroscope_walk : f.gyroscope_white;
   return walk ? f.accelerometer_walk : f.accelerometer_white;
@@ -339,7 +339,7 @@ ImuFigures imu_figures(const SensorGroup& group,
   const auto take = [&](const SensorTriad& triad, Term term) {
     const std::string key =
         fmt::format("the {}'s {}", triad.kind, kTermNames[static_cast<std::size_t>(term)].key);
-    Figure figure = positive_figure(triad, term, options, consumer, key);
+    ExportFigure figure = positive_figure(triad, term, options, consumer, key);
     if (figure.limit)
       notes.push_back(fmt::format(
           "{} was not detected; its upper 95 % limit {} is written, for {} needs a number > 0",

@@ -19,7 +19,7 @@ enum class Absent {
 };
 
 /// One number in SI units, inflated, and what has to be said about it.
-struct Figure {
+struct ExportFigure {
   std::optional<double> value;  ///< nothing: neither a value nor (where asked for) a limit is known
   bool limit = false;           ///< an upper limit, not a value
   std::string origin;  ///< "largest of x 1.7e-4, y 1.6e-4, z <= 2e-4", "upper 95 % limit"…
@@ -27,25 +27,25 @@ struct Figure {
 
 /// The term on every axis; one shared model gives the same three times. Any explicit choice of axes
 /// (max, rms, x…) gives its one number three times.
-std::array<Figure, 3> axis_figures(const SensorTriad& triad,
-                                   Term term,
-                                   Absent absent,
-                                   const ExportOptions& options);
+std::array<ExportFigure, 3> axis_figures(const SensorTriad& triad,
+                                         Term term,
+                                         Absent absent,
+                                         const ExportOptions& options);
 
 /// The one number for a consumer that takes one for all axes: the largest unless options say
 /// otherwise. Values go before limits: a limit only stands where no axis has a value.
-Figure scalar_figure(const SensorTriad& triad,
-                     Term term,
-                     Absent absent,
-                     const ExportOptions& options);
+ExportFigure scalar_figure(const SensorTriad& triad,
+                           Term term,
+                           Absent absent,
+                           const ExportOptions& options);
 
 /// As `scalar_figure` with a limit for what is absent, and Error(input) when there is none, naming
 /// `consumer` and its `key`.
-Figure positive_figure(const SensorTriad& triad,
-                       Term term,
-                       const ExportOptions& options,
-                       const std::string& consumer,
-                       const std::string& key);
+ExportFigure positive_figure(const SensorTriad& triad,
+                             Term term,
+                             const ExportOptions& options,
+                             const std::string& consumer,
+                             const std::string& key);
 
 /// A first-order Gauss-Markov (Ornstein-Uhlenbeck) bias: db = -b/Tc dt + q dW.
 struct GaussMarkov {
@@ -73,11 +73,11 @@ const PlacedModel& representative(const SensorTriad& triad, const ExportOptions&
 
 /// The four numbers of most visual-inertial programs, all > 0.
 struct ImuFigures {
-  Figure gyroscope_white, gyroscope_walk, accelerometer_white, accelerometer_walk;
+  ExportFigure gyroscope_white, gyroscope_walk, accelerometer_white, accelerometer_walk;
   double gyroscope_rate_hz = 0, accelerometer_rate_hz = 0;
 };
 /// The figure of "gyroscope" or "accelerometer", white noise or random walk.
-const Figure& figure_of(const ImuFigures& figures, std::string_view sensor, Term term);
+const ExportFigure& figure_of(const ImuFigures& figures, std::string_view sensor, Term term);
 
 /// Notes on limits and rates go to `notes`. Throws as `positive_figure` and `rate_of`.
 ImuFigures imu_figures(const SensorGroup& group,

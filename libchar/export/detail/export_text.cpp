@@ -68,7 +68,7 @@ std::string export_list(const std::array<double, 3>& values) {
       "[{}, {}, {}]", export_number(values[0]), export_number(values[1]), export_number(values[2]));
 }
 
-double value_or_zero(const Figure& figure) {
+double value_or_zero(const ExportFigure& figure) {
   return figure.value.value_or(0);
 }
 
@@ -159,7 +159,7 @@ std::string density_lines(const ImuFigures& f, std::string_view indent) {
   std::string out;
   for (const char* sensor : {"accelerometer", "gyroscope"})
     for (const ConsumerRow* row : rows_of("kalibr", sensor)) {
-      const Figure& figure = figure_of(f, sensor, row->term);
+      const ExportFigure& figure = figure_of(f, sensor, row->term);
       out += indent;
       out += yaml_line(row->key, row_value(*row, *figure.value), file_unit(*row), figure.origin);
     }
@@ -199,7 +199,9 @@ BiasOfAxes bias_of_axes(const SensorTriad& triad,
   return out;
 }
 
-void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure) {
+void note_figure(std::vector<std::string>& notes,
+                 std::string_view key,
+                 const ExportFigure& figure) {
   if (figure.limit)
     notes.push_back(
         fmt::format("{}: an upper 95 % limit stands for a term that was not detected", key));

@@ -19,7 +19,7 @@ std::string export_number(double value);
 std::string export_list(const std::array<double, 3>& values);
 
 /// The value, or 0.
-double value_or_zero(const Figure& figure);
+double value_or_zero(const ExportFigure& figure);
 
 /// Text for one line of a comment of any language: ASCII, no "--" (XML), no backslash at the end
 /// (C++).
@@ -64,7 +64,7 @@ BiasOfAxes bias_of_axes(const SensorTriad& triad,
                         std::vector<std::string>& notes);
 
 /// Puts down what was replaced or left out of `figure` under its key.
-void note_figure(std::vector<std::string>& notes, std::string_view key, const Figure& figure);
+void note_figure(std::vector<std::string>& notes, std::string_view key, const ExportFigure& figure);
 
 /// The topic as a YAML scalar that every reader takes for text. Throws Error(usage) unless it is
 /// made of letters, digits, '_', '/', '~' and does not start with a digit.

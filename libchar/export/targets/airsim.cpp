@@ -23,7 +23,7 @@ struct AirsimWriter {
   void put(const SensorTriad& triad, Term term, double bias_tau_s = 0) {
     const ConsumerRow& row = row_of("airsim", triad.kind, term);
     const std::string key(row.key);
-    const Figure figure = scalar_figure(triad, term, Absent::zero, options);
+    const ExportFigure figure = scalar_figure(triad, term, Absent::zero, options);
     note_figure(out.notes, key, figure);
     if (!figure.origin.empty()) comments[key] = "before conversion: " + figure.origin;
     imu[key] = row_value(row, value_or_zero(figure), {.bias_tau_s = bias_tau_s});

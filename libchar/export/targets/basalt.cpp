@@ -21,7 +21,7 @@ struct BasaltWriter {
   // A vector, one number for each axis; one number in old files.
   Json numbers(const ConsumerRow& row, const SensorTriad& triad) {
     const std::string key(row.key);
-    const Figure largest = positive_figure(triad, row.term, options, "Basalt", key);
+    const ExportFigure largest = positive_figure(triad, row.term, options, "Basalt", key);
     if (options.older) {
       comment(key, largest.origin);
       return number(row, largest);
@@ -42,7 +42,7 @@ struct BasaltWriter {
     if (!origin.empty()) comments[key] = origin;
   }
 
-  double number(const ConsumerRow& row, const Figure& figure) {
+  double number(const ConsumerRow& row, const ExportFigure& figure) {
     if (figure.limit) note_figure(out.notes, row.key, figure);
     return row_value(row, *figure.value);
   }

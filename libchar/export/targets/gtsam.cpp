@@ -27,7 +27,7 @@ Export write_gtsam(const SensorGroup& group, const ExportOptions& options) {
   else
     out.text += "// p: what PreintegrationCombinedParams::MakeSharedU(g) returned\n";
   const auto line = [&](const ConsumerRow& row) {
-    const Figure& figure = figure_of(f, row.sensor, row.term);
+    const ExportFigure& figure = figure_of(f, row.sensor, row.term);
     out.text += fmt::format("p->{} = gtsam::I_3x3 * {};  // {}{}{}\n",
                             row.key,
                             export_number(row_value(row, *figure.value)),

@@ -54,7 +54,7 @@ struct MatlabWriter {
     std::string call = fmt::format("{} = {}('NoiseType', 'double-sided'", name, function);
     for (const ConsumerRow* row : rows_of("matlab", triad->kind))
       call += argument(*triad, *row, comments);
-    const Figure white = scalar_figure(*triad, Term::white, Absent::zero, options);
+    const ExportFigure white = scalar_figure(*triad, Term::white, Absent::zero, options);
     out.text += fmt::format(
         "% {}: NoiseDensity in ({})/sqrt(Hz), RandomWalk in ({})/s/sqrt(Hz), BiasInstability in "
         "{}\n",

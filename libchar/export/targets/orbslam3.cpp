@@ -29,7 +29,7 @@ Export write_orbslam3(const SensorGroup& group, const ExportOptions& options) {
   for (const Term term : {Term::white, Term::walk})
     for (const char* sensor : {"gyroscope", "accelerometer"}) {
       const ConsumerRow& row = row_of("orbslam3", sensor, term);
-      const Figure& figure = figure_of(f, sensor, term);
+      const ExportFigure& figure = figure_of(f, sensor, term);
       out.text += yaml_line(row.key, row_value(row, *figure.value), file_unit(row), figure.origin);
     }
   if (!options.older) {

@@ -25,7 +25,7 @@ std::string pegasus_sensor(const SensorTriad& triad,
                            const char* unit,
                            const ExportOptions& options,
                            Export& out) {
-  const Figure white = scalar_figure(triad, Term::white, Absent::zero, options);
+  const ExportFigure white = scalar_figure(triad, Term::white, Absent::zero, options);
   const GaussMarkov bias = gauss_markov_scalar(triad, options);
   const ConsumerRow& row = row_of("pegasus", triad.kind, Term::white);
   note_figure(out.notes, fmt::format("{} noise_density", triad.kind), white);

@@ -27,7 +27,7 @@ void put(const SensorTriad& triad,
          std::string& px4,
          std::string& ardupilot) {
   const ConsumerRow& other = row_of("ardupilot", triad.kind, row.term);
-  const Figure figure = scalar_figure(triad, row.term, Absent::limit, options);
+  const ExportFigure figure = scalar_figure(triad, row.term, Absent::limit, options);
   note_figure(out.notes, row.key, figure);
   if (!figure.value) {
     px4 += fmt::format("# {} keeps its value: {}\n", row.key, comment_text(figure.origin));

@@ -25,12 +25,12 @@ std::string covariance(const char* sensor,
     return fmt::format("{}: {}  # not provided\n", key, kNotProvided);
   }
   const double rate = rate_of(*triad, out.notes);
-  const Figure largest = positive_figure(*triad, Term::white, options, "ROS", key);
+  const ExportFigure largest = positive_figure(*triad, Term::white, options, "ROS", key);
   std::array<double, 3> variance{};
   std::array<std::string, 3> origins;
   const auto figures = axis_figures(*triad, Term::white, Absent::limit, options);
   for (std::size_t i = 0; i < 3; ++i) {
-    const Figure& figure = figures[i].value ? figures[i] : largest;
+    const ExportFigure& figure = figures[i].value ? figures[i] : largest;
     variance[i] = row_value(row, *figure.value, {.rate_hz = rate});
     if (figure.limit) note_figure(out.notes, key, figure);
     origins[i] = figure.origin;

@@ -24,7 +24,7 @@ std::string triad_block(const SensorTriad& triad,
                         const ExportOptions& options,
                         Export& out) {
   const std::string name = triad.kind;
-  const Figure white = scalar_figure(triad, Term::white, Absent::zero, options);
+  const ExportFigure white = scalar_figure(triad, Term::white, Absent::zero, options);
   const GaussMarkov bias = gauss_markov_scalar(triad, options);
   const ConsumerRow& row = row_of("rotors", name, Term::white);
   note_figure(out.notes, row.key, white);

@@ -17,7 +17,7 @@ namespace {
 
 std::string noise_element(const std::string& sensor,
                           const PlacedModel& placed,
-                          const Figure& white,
+                          const ExportFigure& white,
                           const GaussMarkov& bias,
                           double rate_hz,
                           const std::string& pad) {
@@ -85,7 +85,7 @@ std::string barometer_element(const SensorModel& m, const ExportOptions& options
         .hint("write unit: Pa into the model file");
   triad.axis.fill(PlacedModel{&m, unit->to_si});
   const double rate = rate_of(triad, out.notes);
-  const Figure white = scalar_figure(triad, Term::white, Absent::zero, options);
+  const ExportFigure white = scalar_figure(triad, Term::white, Absent::zero, options);
   note_figure(out.notes, "barometer: stddev", white);
   return sensor_element("air_pressure",
                         rate,

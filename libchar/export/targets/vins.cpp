@@ -38,7 +38,7 @@ Export write_vins(const SensorGroup& group, const ExportOptions& options) {
                 "# ");
   const auto line = [&](const char* sensor, Term term, double rate, std::string how) {
     const ConsumerRow& row = row_of("vins", sensor, term);
-    const Figure& figure = figure_of(f, sensor, term);
+    const ExportFigure& figure = figure_of(f, sensor, term);
     if (!figure.origin.empty()) how += "; " + figure.origin;
     out.text +=
         yaml_line(row.key, row_value(row, *figure.value, {.rate_hz = rate}), file_unit(row), how);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
@@ -49,7 +50,7 @@ class Hdf5File final : public ArrayContainer {
 
   /// The elements that answer a question.
   std::vector<std::byte> elements(const Hdf5Question& question, std::uint64_t expected) {
-    const LogArray& array = listing_.arrays[question.array];
+    const LogArray& array = listing_.arrays[detail::in_memory(question.array)];
     const std::string where = fmt::format("{}, {}{}{} (row {})",
                                           file_.path(),
                                           printable(array.group),
@@ -106,7 +107,8 @@ class Hdf5Cursor final : public ArrayCursor {
   }
 
   void next(std::size_t rows, std::vector<ArrayPiece>& pieces) override {
-    const auto element = static_cast<std::size_t>(file_.arrays()[array_].element_bytes);
+    const auto element =
+        static_cast<std::size_t>(file_.arrays()[detail::in_memory(array_)].element_bytes);
     pieces.clear();
     Hdf5Question question{array_, row_, rows, 0, rows_.planar ? 1U : 0U};
     if (!rows_.planar) blocks_[0] = file_.elements(question, rows * rows_.columns * element);

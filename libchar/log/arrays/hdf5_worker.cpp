@@ -1,5 +1,6 @@
 #include "libchar/log/arrays/hdf5_worker.hpp"
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_HDF5
@@ -330,8 +331,9 @@ class Worker {
 
   /// The elements of a question; empty when they cannot be read.
   std::vector<std::byte> read(const Hdf5Question& q) const {
-    if (q.array >= readers_.size() || !readers_[q.array]) return {};
-    const Reader& reader = *readers_[q.array];
+    const std::size_t array = detail::in_memory(q.array);
+    if (array >= readers_.size() || !readers_[array]) return {};
+    const Reader& reader = *readers_[array];
     std::vector<hsize_t> start(reader.shape.size(), 0), count = reader.shape;
     if (!select(q, start, count)) return {};
     std::uint64_t bytes = reader.element_bytes;

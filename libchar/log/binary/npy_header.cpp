@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/log/binary/file.hpp"
@@ -328,7 +329,7 @@ NpyHeader parse_npy_header(std::string_view bytes,
     throw refusal(8).says("header length {} exceeds the file size {}", length, file_bytes);
   if (length > kMaxNpyHeader)
     throw refusal(8).says("header length {} exceeds the limit of {}", length, kMaxNpyHeader);
-  std::string literal(bytes.substr(begin, length));
+  std::string literal(bytes.substr(begin, detail::in_memory(length)));
   if (header.major < 3)
     literal = latin1_to_utf8(literal);
   else if (const std::size_t bad = first_invalid_utf8(literal); bad != std::string::npos)

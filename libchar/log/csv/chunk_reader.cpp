@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/log/csv/rows/rows.hpp"
 
@@ -71,7 +72,9 @@ ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
   regular_ = S_ISREG(status.st_mode);
   if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
   if (size_ > 0)
-    block_ = std::min(block_, std::max<std::size_t>(4096, size_));  // small files, small buffers
+    block_ = std::min(
+        block_,
+        std::max<std::size_t>(4096, detail::in_memory(size_)));  // small files, small buffers
 }
 
 ChunkReader::~ChunkReader() {
@@ -233,7 +236,7 @@ void ChunkReader::hash(const RawChunk& chunk) {
   sha_->update({chunk.bytes.data() + chunk.hash_from, chunk.hash_to - chunk.hash_from});
   static constexpr char kZeros[4096] = {};
   for (std::uint64_t left = chunk.nuls_after; left > 0;) {
-    const std::size_t n = std::min<std::uint64_t>(left, sizeof kZeros);
+    const std::size_t n = std::min(detail::in_memory(left), sizeof kZeros);
     sha_->update({kZeros, n});
     left -= n;
   }

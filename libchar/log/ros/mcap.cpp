@@ -17,6 +17,7 @@
 
 #include "libchar/core/file/crc32.hpp"
 #include "libchar/core/finding.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/file.hpp"
@@ -286,7 +287,7 @@ std::optional<McapSummary> summary_records(MovingWindow& file,
 
 /// Are the records of an MCAP file to follow? Throws Error(input) where they are not.
 void check_mcap_magic(MovingWindow& file) {
-  const std::size_t size = std::min<std::uint64_t>(file.size(), kMcapMagic.size());
+  const std::size_t size = std::min(detail::in_memory(file.size()), kMcapMagic.size());
   const auto bytes = file.view(0, size);
   const std::string_view found(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (found == kMcapMagic) return;

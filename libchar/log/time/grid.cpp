@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -107,8 +108,8 @@ void TimeGrid::process(bool end) {
   while ((learned_ || ready(end)) && waiting_ > ahead && !window_.over) {
     if (!learned_) learn();
     Pending& front = pending_.front();
-    const std::size_t count =
-        std::min<std::size_t>(front.block.rows - front.done, waiting_ - ahead);
+    const std::size_t count = std::min(detail::in_memory(front.block.rows - front.done),
+                                       detail::in_memory(waiting_ - ahead));
     const std::size_t taken = process_rows(front, count);
     clocks_.channels.look(front.block, front.done, front.done + taken);
     front.done += taken;

@@ -5,6 +5,7 @@
 
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/fault_log.hpp"
 #include "libchar/replay/detail/tracks/thinned_tracks.hpp"
@@ -19,7 +20,7 @@ namespace {
 std::vector<const FaultAnswer*> answers_of(const AlgorithmResult& a, std::size_t known) {
   std::vector<const FaultAnswer*> out(known, nullptr);
   for (const FaultAnswer& answer : a.answers)
-    if (answer.fault < known) out[answer.fault] = &answer;
+    if (answer.fault < known) out[detail::in_memory(answer.fault)] = &answer;
   return out;
 }
 
@@ -34,10 +35,10 @@ std::vector<double> out_share(const ReplayResult& r, const AlgorithmResult& a) {
   const double run_s = static_cast<double>(r.instants) / r.rate_hz, end_s = r.start_s + run_s;
   for (const FoundFault& found : a.faults)
     if (takes_out(found) && found.sensor < out.size())
-      out[found.sensor] += std::max(0.0,
-                                    std::min(found.to_s.value_or(end_s), end_s) -
-                                        std::max(found.from_s, r.start_s)) /
-                           run_s;
+      out[detail::in_memory(found.sensor)] += std::max(0.0,
+                                                       std::min(found.to_s.value_or(end_s), end_s) -
+                                                           std::max(found.from_s, r.start_s)) /
+                                              run_s;
   return out;
 }
 

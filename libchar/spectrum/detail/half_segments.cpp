@@ -31,6 +31,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/spectrum/detail/half_pass.hpp"
 #include "libchar/spectrum/detail/half_rows.hpp"
 
@@ -122,7 +123,7 @@ HalfSegments::Used HalfSegments::State::push(
 }
 
 bool HalfSegments::suits(const WelchOptions& options) {
-  const std::uint64_t h = options.segment / 2;
+  const std::size_t h = detail::in_memory(options.segment / 2);
   return options.window == Window::hann && options.overlap == 0.5 &&
          options.detrend == Detrend::constant && options.segment % 2 == 0 && h >= kShortest &&
          rows_and_columns(h).first != 0;

@@ -19,10 +19,10 @@ struct Run {
 // Stretches without a missing sample.
 std::vector<Run> present_runs(std::span<const double> record) {
   std::vector<Run> runs;
-  const std::uint64_t n = record.size();
-  for (std::uint64_t i = 0; i < n;) {
+  const std::size_t n = record.size();
+  for (std::size_t i = 0; i < n;) {
     while (i < n && !std::isfinite(record[i])) ++i;
-    const std::uint64_t begin = i;
+    const std::size_t begin = i;
     i += finite_run(record.subspan(i));
     if (i > begin) runs.push_back({begin, i});
   }

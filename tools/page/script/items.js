@@ -4,10 +4,9 @@
 const KINDS = [
   { kind: "model", ends: [".sensor.yaml", ".sensor.yml"] },
   { kind: "scene", ends: [".scene.yaml", ".scene.yml"] },
+  { kind: "fusion", ends: ["fusion.yaml"] },
   { kind: "beside", ends: [".yaml", ".yml", ".sha256"] }, // read with what they stand beside
 ];
-const REPORTS = ["characterization", "replay", "runs", "fit", "pooled"];
-
 /** The kind of a file, by its name, or by what a JSON document says of itself. */
 async function kindOf(name, file) {
   const lower = name.toLowerCase();
@@ -19,6 +18,19 @@ async function kindOf(name, file) {
   if (format && format[1] === "sensor-model") return "model";
   return format ? "report" : "beside";
 }
+
+/** Of a report.json: a characterization and its channels, or a replay. */
+function reportAbout(text) {
+  try {
+    const { format, recording } = JSON.parse(text);
+    return { kind: format === "replay" ? "replay" : "report", channels: recording && recording.channels || [] };
+  } catch {
+    return null; // the program says what is wrong with it
+  }
+}
+
+/** Folders of results: what stands in one beside its report.json is no log. */
+const resultFolders = files => new Set(files.map(({ name }) => /^(.*\/)report\.json$/.exec(name)).filter(Boolean).map(([, folder]) => folder));
 
 /** Files of a drop, those inside of folders too: [{name, file}]. */
 async function droppedFiles(transfer) {

@@ -17,9 +17,13 @@ const bench = {
   },
   /** What figures, exports and comparisons are made of. */
   get subjects() {
-    const dropped = this.items.filter(({ kind }) => kind === "report" || kind === "model").map(({ name, kind }) => ({ name, kind, channels: [] }));
+    const dropped = this.items.filter(({ kind, about }) => kind === "model" || about).map(({ name, kind, about }) => ({ name, kind, channels: [], ...about }));
     const folders = this.made.filter(({ report }) => report).map(({ name, report }) => ({ name: folderOf(name), ...report }));
     return [...folders, ...dropped];
+  },
+  /** What a log can be fused by. */
+  get fusions() {
+    return [...this.made, ...this.items].filter(({ name }) => name.endsWith("fusion.yaml"));
   },
   /** A name that no output has yet. */
   free(name) {
@@ -41,21 +45,25 @@ function showError(text, code) {
   box.replaceChildren();
   if (!text) return;
   box.append(element("p", {}, text));
-  if (code) box.append(button(`What ${code} means`, () => command(["explain", code], { keep: true })));
+  if (code) box.append(button(`What ${code} means`, () => command([["explain", code]], { keep: true })));
 }
 
 const lastLine = text => text.trim().split("\n").filter(Boolean).pop() || "";
+
+/** Of a run that the browser had no room for. */
+const NO_ROOM = "A page has 4 GB at most, less where the browser says so: enough for a log of any length with up to 100 channels. " +
+  "The command below takes as much as the machine has.";
 
 /** What a run that failed says, as one who has only this page can use it. */
 function failure(answer) {
   if (answer.failed === undefined) {
     const line = answer.err.split("\n").find(one => CODE.test(one) || one.includes("internal error")) || lastLine(answer.err);
-    return line.replace(/^sensorchar: /, "") || `the program ended with exit code ${answer.code}`;
+    const said = line.replace(/^sensorchar: /, "") || `the program ended with exit code ${answer.code}`;
+    return /\bE0403\b/.test(said) ? `${said}. ${NO_ROOM}` : said;
   }
-  const memory = /memory|allocation|out of bounds|OOM/i.test(answer.failed);
-  return memory
-    ? "The browser gives the program no more memory for this. On a command line, the same command takes as much as the machine has."
-    : `The program ended in this browser: ${answer.failed}. On a command line, the same command may say more.`;
+  return /memory|allocation|out of bounds|OOM/i.test(answer.failed)
+    ? `The browser gives the program no more memory. ${NO_ROOM}`
+    : `The program ended in this browser: ${answer.failed}. On a command line, the command below may say more.`;
 }
 
 const parts = items => items.flatMap(item => item.parts);
@@ -92,11 +100,11 @@ function card(item) {
   if (item.error) {
     const code = CODE.exec(item.error);
     const box = element("ul", { class: "seen" }, element("li", { class: "bad" }, item.error,
-      code ? button(`What ${code[1]} means`, () => command(["explain", code[1]], { keep: true })) : null));
+      code ? button(`What ${code[1]} means`, () => command([["explain", code[1]]], { keep: true })) : null));
     return element("article", {}, head, box, chosen(item, changed));
   }
   if (item.recording) return element("article", {}, head, ...inspectionView(item, changed).filter(Boolean));
-  const about = { model: "sensor model", report: "report", scene: "scene", beside: "read with what stands beside it", log: "" }[item.kind];
+  const about = { model: "sensor model", report: "report", scene: "scene", fusion: "result of a replay", beside: "read with what stands beside it", log: "" }[item.kind];
   return element("article", {}, head, element("p", { class: "facts" }, about));
 }
 
@@ -128,6 +136,14 @@ function draw() {
   drawUses();
 }
 
+/** A report or a model that was dropped alone is shown. */
+function opened(item) {
+  use = USES.find(({ id }) => id === (item.kind === "model" ? "show" : "table"));
+  use.source = item.name;
+  drawUses();
+  return command([use.words(bench, use), ...(item.about ? [figureWords(bench, use.source)] : [])], { needed: 1 });
+}
+
 /** Looks at items again, each beside the others, and draws; a single recording of which all is known is characterized at once. */
 async function look(items) {
   showError("");
@@ -146,6 +162,7 @@ async function look(items) {
     drawUses();
     return run();
   }
+  if (bench.logs.length === 0 && items.length === 1 && (items[0].kind === "report" || items[0].kind === "model")) return opened(items[0]);
   const failed = items.filter(item => item.error);
   if (failed.length > 0 && failed.length === items.length) setState("error", failed.length === 1 ? failed[0].error : "None of these files could be read.");
   else setState("done", bench.logs.length > 0 || bench.items.some(({ recording }) => recording) ? "Read." : "Ready.");
@@ -157,56 +174,54 @@ function stopped(error) {
 }
 
 async function take(files) {
-  const taken = new Set(bench.items.map(({ name }) => name)), fresh = [];
+  const taken = new Set(bench.items.map(({ name }) => name)), fresh = [], results = resultFolders(files);
   for (const { name, parts: found } of asLogs(files)) {
     const free = freeName(name, taken);
     taken.add(free);
-    const kind = found.length > 1 ? "log" : await kindOf(free, found[0].file);
+    let kind = found.length > 1 ? "log" : await kindOf(free, found[0].file);
+    if (kind === "log" && [...results].some(folder => name.startsWith(folder))) kind = "beside";
+    const about = kind === "report" ? reportAbout(await found[0].file.text()) : null;
     const renamed = found.map(part => ({ name: free + part.name.slice(name.length), file: part.file }));
-    fresh.push({ name: free, kind, parts: renamed, reading: new Map(), units: new Map(), recording: null, error: "" });
+    fresh.push({ name: free, kind, about, parts: renamed, reading: new Map(), units: new Map(), recording: null, error: "" });
   }
   bench.items.push(...fresh);
   draw();
   await look(fresh);
 }
 
-const run = () => command(use.words(bench, use), { made: use.made ? bench.made : [] });
+const run = () => command(use.jobs ? use.jobs(bench, use) : [use.words(bench, use)], { made: use.made ? bench.made : [], said: use.words(bench, use) });
 
-/** Runs a command and shows all of it. `keep`: what is shown of the last one stays. */
-async function command(words, { made = [], keep = false } = {}) {
+const worked = answer => answer.failed === undefined && ([0, 6].includes(answer.code) || (answer.code === 4 && answer.files.length > 0));
+
+/** Runs commands, side by side, and shows all of it. `said`: the command that they are parts of. `keep`: what is shown of the last one stays.
+ * `needed`: so many of them have to work. */
+async function command(jobs, { made = [], keep = false, said = jobs[0], needed = jobs.length } = {}) {
   if (!keep) showError("");
-  byId("command").textContent = shellCommand(words);
-  let answer;
+  byId("command").textContent = shellCommand(said);
+  let answers;
   try {
-    answer = await start(words, "Working", made);
+    answers = await Promise.all(jobs.map(words => start(words, "Working", made)));
   } catch (error) {
     return stopped(error);
   }
-  const failed = answer.failed !== undefined || ![0, 4, 6].includes(answer.code) || (answer.code === 4 && answer.files.length === 0);
-  if (failed) {
-    const text = failure(answer), code = CODE.exec(text);
-    showError(text, code && code[1]);
-    setState("error", "That did not work.");
-    return;
-  }
-  keepFiles(answer.files);
-  show(answer);
+  const good = answers.filter(worked), bad = answers.slice(0, needed).filter(answer => !worked(answer));
+  keepFiles(good.flatMap(({ files }) => files));
+  if (good.length > 0) show(good);
   if (!keep) drawUses();
-  byId("command").textContent = shellCommand(words);
-  setState("done", answer.code === 0 ? "Done." : answer.code === 6 ? "Done: a check failed." : "Done, with a warning.");
+  byId("command").textContent = shellCommand(said);
+  if (bad.length > 0) {
+    const texts = bad.map(failure), code = CODE.exec(texts[0]);
+    showError(texts.join("\n"), code && code[1]);
+    return setState("error", good.length === 0 ? "That did not work." : `${bad.length} of ${jobs.length} did not work.`);
+  }
+  const worst = Math.max(...good.map(({ code }) => code));
+  setState("done", worst === 0 ? "Done." : worst === 6 ? "Done: a check failed." : "Done, with a warning.");
 }
 
 function keepFiles(files) {
-  const fresh = files.map(({ name, bytes }) => ({ name, bytes, blob: new File([bytes], name.split("/").pop()), report: reportOf(name, bytes) }));
+  const fresh = files.map(({ name, bytes }) => ({ name, bytes, blob: new File([bytes], name.split("/").pop()), report: name.endsWith("/report.json") ? reportAbout(new TextDecoder().decode(bytes)) : null }));
   bench.made = [...bench.made.filter(({ name }) => !fresh.some(one => one.name === name)), ...fresh];
   drawFiles();
-}
-
-/** Of a report.json: a characterization and its channels, or a replay. */
-function reportOf(name, bytes) {
-  if (!name.endsWith("/report.json")) return null;
-  const { format, recording } = JSON.parse(new TextDecoder().decode(bytes));
-  return { kind: format === "replay" ? "replay" : "report", channels: format === "replay" ? [] : recording.channels };
 }
 
 const TYPES = { html: "text/html", json: "application/json", svg: "image/svg+xml", csv: "text/csv", yaml: "text/yaml", md: "text/markdown" };
@@ -221,23 +236,35 @@ function drawFiles() {
   }));
 }
 
-function show(answer) {
+/** Pages of reports, the overview first. */
+const PAGE = /(^|\/)(report|index|runs)\.html$/;
+const pagesOf = files => files.filter(({ name }) => PAGE.test(name)).sort((a, b) => a.name.split("/").length - b.name.split("/").length);
+
+/** Prints itself when the page asks for it: from outside, nobody may. In front of the report's own policy, which allows no other script. */
+const PRINTS = "<script>addEventListener('message', event => event.data === 'print' && print());</scr" + "ipt>";
+
+function showPage({ bytes }) {
+  byId("report").srcdoc = new TextDecoder().decode(bytes).replace("<head>", head => head + PRINTS);
+}
+
+/** What is shown as text: what the program says, and a single short file. */
+function shownText(out, files) {
+  const texts = files.filter(({ name }) => !/\.(svg|npy|html)$/.test(name)), [file] = texts, short = texts.length === 1 && file.bytes.length < 2e5;
+  return `${out}\n${short ? new TextDecoder().decode(file.bytes) : ""}`.trim();
+}
+
+function show(answers) {
   byId("result").hidden = false;
-  const page = answer.files.find(({ name }) => /(^|\/)(report|index|runs)\.html$/.test(name) && name.split("/").length <= 2);
-  const frame = byId("report");
-  frame.hidden = !page;
-  byId("print").hidden = !page;
-  if (page) frame.srcdoc = new TextDecoder().decode(page.bytes);
-  const warnings = answer.err.split("\n").filter(line => line.trim());
+  const files = answers.flatMap(answer => answer.files), pages = pagesOf(files), text = shownText(answers.map(({ out }) => out).join("\n"), files);
+  byId("report").hidden = byId("print").hidden = pages.length === 0;
+  byId("pages").replaceChildren(...pages.length < 2 ? [] : [choice("Report", pages.map(({ name }) => [name, folderOf(name)]), pages[0].name,
+    wanted => showPage(pages.find(({ name }) => name === wanted)))]);
+  if (pages.length > 0) showPage(pages[0]);
+  const warnings = answers.flatMap(({ err }) => err.split("\n")).filter(line => line.trim());
   byId("said").replaceChildren(...warnings.map(line => element("li", {}, line.replace(/^sensorchar: /, ""))));
-  byId("text").hidden = page !== undefined || !answer.out.trim();
-  byId("text").textContent = answer.out;
-  byId("figures").replaceChildren(...answer.files.filter(({ name }) => name.endsWith(".svg")).map(figure));
-  const small = answer.files.length === 1 && !page && answer.files[0].bytes.length < 2e5 && !/\.(svg|npy)$/.test(answer.files[0].name);
-  if (small) {
-    byId("text").hidden = false;
-    byId("text").textContent = `${answer.out}\n${new TextDecoder().decode(answer.files[0].bytes)}`.trim();
-  }
+  byId("text").hidden = pages.length > 0 || !text;
+  byId("text").textContent = text;
+  byId("figures").replaceChildren(...files.filter(({ name }) => name.endsWith(".svg")).map(figure));
 }
 
 /** A figure as it is saved, with a way to have it as PNG. */
@@ -293,10 +320,7 @@ function listen() {
     }
   });
   byId("zip").addEventListener("click", () => save(zipped(bench.made), "sensorchar.zip"));
-  byId("print").addEventListener("click", () => {
-    const page = bench.made.filter(({ name }) => name.endsWith(".html")).pop();
-    open(URL.createObjectURL(new Blob([page.bytes], { type: "text/html" })));
-  });
+  byId("print").addEventListener("click", () => byId("report").contentWindow.postMessage("print", "*"));
 }
 
 /** The bytes of a text of 7 bits a character (tools/page/build/pack.py: seven_bits). */

@@ -11,6 +11,25 @@ const modelsOf = bench => bench.subjects.filter(({ kind }) => kind === "model" |
 const entriesOf = subjects => subjects.map(({ name }) => [name, name]);
 const first = (entries, wanted) => entries.some(({ name }) => name === wanted) ? wanted : entries[0].name;
 
+/** How logs are read that go into one command: what was said of any of them. */
+function readingOf(logs) {
+  const together = { reading: new Map(), units: new Map() };
+  for (const log of logs) for (const key of ["reading", "units"]) for (const [name, value] of log[key]) together[key].set(name, value);
+  return readingWords(together);
+}
+
+/** Channels that one axis can have: of unlike units, the first. */
+const drawable = channels => new Set(channels.map(({ unit }) => unit)).size > 1 ? channels[0].name : "";
+
+/** The first figure of a report. */
+function figureWords(bench, source) {
+  const channel = drawable(bench.subjects.find(({ name }) => name === source).channels);
+  return ["plot", source, ...(channel ? ["--channel", channel] : []), "-o", bench.free(`${stem(source)}.svg`)];
+}
+
+const characterizeWords = (logs, use, out) => ["characterize", ...names(logs), ...readingOf(logs), ...optionWords(use.values), "-o", out];
+const TABLES = [["md", "Markdown", []], ["tex", "LaTeX", ["--latex"]], ["csv", "CSV", ["--csv"]]];
+
 const base = { main: [], hidden: [] };
 
 const USES = [
@@ -19,15 +38,22 @@ const USES = [
     folded: true, main: [["--still", "Only a still stretch"], ["--data", "What the samples are"], ["--verify", "Check by simulation"], ["--limits", "Limits of a data sheet"]],
     hidden: ["--lot", "--unit"],
     fits: bench => bench.logs.length > 0,
-    words: (bench, use) => {
-      const out = bench.logs.length === 1 ? `${stem(bench.logs[0].name)}-report` : "reports";
-      return ["characterize", ...names(bench.logs), ...readingWords(bench.logs[0]), ...optionWords(use.values), "-o", bench.free(out)];
+    words: (bench, use) => characterizeWords(bench.logs, use, bench.free(bench.logs.length === 1 ? `${stem(bench.logs[0].name)}-report` : "reports")),
+    /** One after the other on a command line, side by side here; pooled, they are one. */
+    jobs: (bench, use) => {
+      if (bench.logs.length === 1 || use.values.get("--pool")) return [use.words(bench, use)];
+      const folder = bench.free("reports"), taken = new Set();
+      return bench.logs.map(log => {
+        const inside = freeName(stem(log.name), taken);
+        taken.add(inside);
+        return characterizeWords([log], use, `${folder}/${inside}`);
+      });
     },
   },
   {
     ...base, id: "lot", label: "Compare devices: which one?", verb: "characterize", hidden: ["--lot", "--pool", "--unit"],
     fits: bench => bench.logs.length > 1,
-    words: (bench, use) => ["characterize", ...names(bench.logs), ...readingWords(bench.logs[0]), ...optionWords(use.values), "--lot", "-o", bench.free("lot")],
+    words: (bench, use) => [...characterizeWords(bench.logs, use, bench.free("lot")), "--lot"],
   },
   {
     ...base, id: "compare", label: "Compare two reports", verb: "compare", made: true,
@@ -74,6 +100,22 @@ const USES = [
     },
   },
   {
+    ...base, id: "fuse", label: "Fuse by a replay", verb: "fuse", made: true, main: [["--algorithm", "Method"], ["--fault-free", "No fault so long"]],
+    hidden: ["--with", "--unit"],
+    fits: bench => bench.logs.length > 0 && bench.fusions.length > 0,
+    choices: (bench, use, changed) => {
+      const take = key => value => {
+        use[key] = value;
+        changed();
+      };
+      use.source = first(bench.logs, use.source);
+      use.by = first(bench.fusions, use.by);
+      return [choice("Recording", entriesOf(bench.logs), use.source, take("source")), choice("By", entriesOf(bench.fusions), use.by, take("by"))];
+    },
+    words: (bench, use) => ["fuse", use.source, ...readingWords(bench.logs.find(({ name }) => name === use.source)), "--with", use.by,
+      ...optionWords(use.values), "-o", bench.free(`${stem(use.source)}-fused.csv`)],
+  },
+  {
     ...base, id: "model", label: "Export for a consumer", verb: "model", made: true, main: [["--axes", "Axes"]], hidden: ["--to"],
     fits: bench => modelsOf(bench).length > 0,
     choices: (bench, use, changed) => {
@@ -99,7 +141,7 @@ const USES = [
       use.source = first(bench.subjects, use.source);
       const { channels } = bench.subjects.find(({ name }) => name === use.source);
       // Unlike units share no axis: one channel, then.
-      if (use.source !== before) use.values.set("--channel", new Set(channels.map(({ unit }) => unit)).size > 1 ? channels[0].name : "");
+      if (use.source !== before) use.values.set("--channel", drawable(channels));
       return [choice("Of", entriesOf(bench.subjects), use.source, value => {
         use.source = value;
         use.values.set("--channel", "");
@@ -107,6 +149,34 @@ const USES = [
       })];
     },
     words: (bench, use) => ["plot", use.source, ...optionWords(use.values), "-o", bench.free(`${stem(use.source)}${use.values.get("--kind") ? `-${use.values.get("--kind")}` : ""}.svg`)],
+  },
+  {
+    ...base, id: "table", label: "Table of a report", verb: "report", made: true, main: [["--channel", "Channels"]], hidden: ["--markdown", "--latex", "--csv"],
+    fits: bench => reportsOf(bench).length > 0,
+    choices: (bench, use, changed) => {
+      const take = key => value => {
+        use[key] = value;
+        changed();
+      };
+      use.source = first(reportsOf(bench), use.source);
+      use.as = use.as || TABLES[0][0];
+      return [choice("Of", entriesOf(reportsOf(bench)), use.source, take("source")),
+        choice("As", TABLES.map(([end, title]) => [end, title]), use.as, take("as"))];
+    },
+    words: (bench, use) => ["report", use.source, ...TABLES.find(([end]) => end === (use.as || TABLES[0][0]))[2], ...optionWords(use.values),
+      "-o", bench.free(`${stem(use.source)}.${use.as || TABLES[0][0]}`)],
+  },
+  {
+    ...base, id: "show", label: "Show a model", verb: "model", made: true, main: [["--axes", "Axes"]], hidden: ["--to"],
+    fits: bench => bench.models.length > 0,
+    choices: (bench, use, changed) => {
+      use.source = first(bench.models, use.source);
+      return [choice("Model", entriesOf(bench.models), use.source, value => {
+        use.source = value;
+        changed();
+      })];
+    },
+    words: (bench, use) => ["model", use.source, ...optionWords(use.values)],
   },
   {
     ...base, id: "simulate", label: "Simulate", verb: "simulate", made: true,
@@ -136,5 +206,20 @@ const USES = [
       })];
     },
     words: (bench, use) => ["fit", use.source, ...optionWords(use.values), "--models", bench.free(`${stem(use.source)}-models`)],
+  },
+  {
+    ...base, id: "convert", label: "Convert", verb: "convert", main: [["--dtype", "Numbers"]], hidden: ["--unit", "--as"],
+    fits: bench => bench.logs.length > 0,
+    choices: (bench, use, changed) => {
+      const take = key => value => {
+        use[key] = value;
+        changed();
+      };
+      use.source = first(bench.logs, use.source);
+      use.to = use.to || "csv";
+      return [choice("Recording", entriesOf(bench.logs), use.source, take("source")), choice("To", [["csv", "CSV"], ["npy", "NumPy"]], use.to, take("to"))];
+    },
+    words: (bench, use) => ["convert", use.source, ...readingWords(bench.logs.find(({ name }) => name === use.source)), ...optionWords(use.values),
+      "-o", bench.free(`${stem(use.source)}-converted.${use.to || "csv"}`)],
   },
 ].map(use => ({ ...use, values: new Map() }));

@@ -91,15 +91,15 @@ std::vector<Cells> cells_further_on(const Study& study, std::size_t column) {
   std::error_code none;
   if (study.whole || !std::filesystem::is_regular_file(study.info.file, none)) return out;
   std::ifstream file(study.info.file, std::ios::binary);
-  const std::size_t size = std::filesystem::file_size(study.info.file, none);
+  const std::uint64_t size = std::filesystem::file_size(study.info.file, none);
   std::string text(kLook, '\0');
-  const auto look_at = [&](std::size_t place) {
+  const auto look_at = [&](std::uint64_t place) {
     file.seekg(static_cast<std::streamoff>(place));
     return static_cast<bool>(file.read(text.data(), static_cast<std::streamsize>(kLook)));
   };
   if (!look_at(0) || !study.head.starts_with(text)) return out;  // compressed, or UTF-16
   for (std::size_t k = 1; k <= kPlaces; ++k) {
-    if (!look_at(size / kPlaces * k - std::min(kLook, size / kPlaces))) break;
+    if (!look_at(size / kPlaces * k - std::min<std::uint64_t>(kLook, size / kPlaces))) break;
     const std::size_t row = std::min(text.find('\n'), kLook - 1) + 1;
     add_cells(study.dialect,
               std::string_view(text).substr(row),

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/log/ros/messages/known_messages.hpp"
 
@@ -178,8 +179,8 @@ bool walk_numbers(const ProgramStep& step, Wire wire, std::uint64_t count, Walk&
   const std::uint64_t size = size_of_primitive(step.number);
   if (!advance(walk, padding(walk.at, alignment_of(wire, step.number)))) return false;
   if ((walk.size - walk.at) / size < count) return false;
-  const std::uint64_t listed = std::min<std::uint64_t>(count, step.slots.size());
-  for (std::uint64_t i = 0; i < listed; ++i)
+  const std::size_t listed = std::min(detail::in_memory(count), step.slots.size());
+  for (std::size_t i = 0; i < listed; ++i)
     if (step.slots[i] != kNoSlot)
       take(walk.data + walk.at + i * size, step.number, step.slots[i], walk);
   walk.at += count * size;
@@ -193,13 +194,15 @@ bool walk_messages(const ProgramStep& step, std::uint64_t count, Walk& walk) {
   // Every element has a byte at least, so that no count keeps this loop going beyond the message.
   if (walk.size - walk.at < count) return false;
   for (std::uint64_t i = 0; i < count; ++i)
-    if (!walk_steps(i < step.elements.size() ? step.elements[i] : step.rest.front(), walk))
+    if (!walk_steps(
+            i < step.elements.size() ? step.elements[detail::in_memory(i)] : step.rest.front(),
+            walk))
       return false;
   return true;
 }
 
 bool walk_stretch(const ProgramStep& step, Wire wire, Walk& walk) {
-  const Stretch& stretch = step.stretch[wire == Wire::ros1 ? 0 : walk.at & 7U];
+  const FixedStretch& stretch = step.stretch[wire == Wire::ros1 ? 0 : walk.at & 7U];
   if (walk.size - walk.at < stretch.bytes) return false;
   const std::byte* begin = walk.data + walk.at;
   for (const Take& one : stretch.takes) take(begin + one.offset, one.kind, one.slot, walk);
@@ -482,12 +485,12 @@ class Compiler {
     ProgramStep step;
     const std::size_t variants = options_.wire == Wire::ros1 ? 1 : 8;
     for (std::size_t v = 0; v < variants; ++v) {
-      Stretch& stretch = step.stretch[v];
+      FixedStretch& stretch = step.stretch[v];
       for (const Piece& piece : draft.open) {
         stretch.bytes += padding(v + stretch.bytes, alignment_of(options_.wire, piece.kind));
         const std::uint64_t size = size_of_primitive(piece.kind);
         for (std::uint64_t i = 0; piece.field != kNoSlot && i < piece.count; ++i)
-          if (const std::uint32_t to = slot(piece.field + i); to != kNoSlot)
+          if (const std::uint32_t to = slot(piece.field + detail::in_memory(i)); to != kNoSlot)
             stretch.takes.push_back({stretch.bytes + i * size, piece.kind, to});
         stretch.bytes = std::min<std::uint64_t>(stretch.bytes + size * piece.count, kHuge);
       }
@@ -495,7 +498,7 @@ class Compiler {
     draft.open.clear();
     draft.program.wanted |= !step.stretch[0].takes.empty();
     if (has_example_) {
-      const Stretch& here = step.stretch[options_.wire == Wire::ros1 ? 0 : walk_.at & 7U];
+      const FixedStretch& here = step.stretch[options_.wire == Wire::ros1 ? 0 : walk_.at & 7U];
       if (!advance(walk_, here.bytes)) misfit();
     }
     draft.program.steps.push_back(std::move(step));

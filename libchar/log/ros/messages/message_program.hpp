@@ -51,7 +51,7 @@ struct Take {
   std::uint32_t slot = 0;
 };
 
-struct Stretch {
+struct FixedStretch {
   std::uint64_t bytes = 0;
   std::vector<Take> takes;
 };
@@ -59,9 +59,10 @@ struct Stretch {
 struct ProgramStep {
   enum class Kind : std::uint8_t { stretch, texts, numbers, messages };
   Kind kind = Kind::stretch;
-  bool counted = false;            ///< a count stands in front (variable arrays)
-  std::uint64_t count = 1;         ///< where none does
-  std::array<Stretch, 8> stretch;  ///< by the position in front, modulo 8; of ROS 1 the first only
+  bool counted = false;     ///< a count stands in front (variable arrays)
+  std::uint64_t count = 1;  ///< where none does
+  std::array<FixedStretch, 8>
+      stretch;  ///< by the position in front, modulo 8; of ROS 1 the first only
   Primitive number = Primitive::f64;  ///< of `numbers`
   std::vector<std::uint32_t> slots;   ///< of the first elements of `numbers`; kNoSlot = not wanted
   std::vector<MessageProgram> elements;  ///< of the first elements of `messages`

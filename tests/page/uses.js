@@ -1,0 +1,222 @@
+// The uses of the page, each as a person drives it: files in, buttons pressed, what comes of it looked at.
+"use strict";
+const fs = require("fs"), path = require("path");
+const { ROOT, LIMIT_MS, check, opened, state, dropped } = require("./support.js");
+
+/** Normal numbers, the same ones every time (Numerical Recipes' 32-bit generator, Box-Muller). */
+function normal(seed) {
+  let x = seed >>> 0;
+  const uniform = () => (x = (Math.imul(1664525, x) + 1013904223) >>> 0, (x + 0.5) / 4294967296);
+  return () => Math.sqrt(-2 * Math.log(uniform())) * Math.cos(2 * Math.PI * uniform());
+}
+
+function written(folder, name, heads, rows) {
+  const file = path.join(folder, name);
+  fs.writeFileSync(file, `${heads.join(",")}\n${rows.map(row => row.join(",")).join("\n")}\n`);
+  return file;
+}
+
+/** A device at rest, as noisy as said. */
+function device(folder, name, sd, seed) {
+  const draw = normal(seed);
+  return written(folder, name, ["t", "gyro_x [deg/s]"], Array.from({ length: 20000 }, (_, i) => [i / 100, (sd * draw()).toFixed(6)]));
+}
+
+/** Four sensors of one turning thing, and the truth. */
+function array(folder) {
+  const draw = normal(7), noise = [0.1, 0.1, 0.2, 0.4];
+  return written(folder, "array.csv", ["t", "a [deg/s]", "b [deg/s]", "c [deg/s]", "d [deg/s]", "truth [deg/s]"], Array.from({ length: 8000 }, (_, i) => {
+    const truth = 5 * Math.sin(i / 300);
+    return [i / 100, ...noise.map(sd => (truth + sd * draw()).toFixed(5)), truth.toFixed(5)];
+  }));
+}
+
+/** A curve as one reads it off a data sheet: white noise of 0.01, flicker of 0.002. */
+function curve(folder) {
+  const taus = Array.from({ length: 25 }, (_, i) => 0.1 * 10 ** (i / 6));
+  return written(folder, "sheet.csv", ["tau", "adev"], taus.map(tau => [tau.toPrecision(6), Math.hypot(0.01 / Math.sqrt(tau), 0.002).toPrecision(6)]));
+}
+
+/** One page, and what a person does with it. */
+class Session {
+  constructor(browser, page, folder) {
+    Object.assign(this, { browser, page, folder });
+  }
+  async open() {
+    Object.assign(this, await opened(this.browser, this.page));
+    return this;
+  }
+  async drop(...files) {
+    const answer = await dropped(this.tab, files);
+    return answer.end;
+  }
+  async ended(what, wanted = "done") {
+    await this.tab.waitForFunction(() => document.documentElement.dataset.state !== "working", null, { timeout: LIMIT_MS });
+    const end = await state(this.tab, ["done", "error", "ready"]);
+    const error = await this.tab.locator("#error").innerText().catch(() => "");
+    check(end === wanted, `${what}: ${end}: ${error}`);
+    console.log(`${what}: ${end}; ${await this.command()}`);
+  }
+  command() { return this.tab.locator("#command").innerText(); }
+  text() { return this.tab.locator("#text").innerText(); }
+  /** Chooses a use and runs it. */
+  async run(use, fill = async () => {}) {
+    await this.tab.getByRole("button", { name: use, exact: true }).first().click();
+    await fill(this.tab);
+    await this.tab.locator("#run").click();
+    await this.ended(use);
+  }
+  files() { return this.tab.locator("#files a[download]").allInnerTexts(); }
+  async has(...ends) {
+    const files = await this.files();
+    for (const end of ends) check(files.some(name => name.endsWith(end)), `no file ${end} among ${files}`);
+  }
+  /** Words of the report in the frame. */
+  async report(...words) {
+    const frame = this.tab.frameLocator("#report");
+    await frame.locator("body").waitFor({ timeout: LIMIT_MS });
+    const text = await frame.locator("body").innerText();
+    for (const word of words) check(text.includes(word), `the report does not say ${word}`);
+  }
+  /** The file that a press saves; Firefox tells nobody of its downloads: there, what would be saved. */
+  async saved(press, name) {
+    const file = path.join(this.folder, name);
+    if (this.browser.browserType().name() === "firefox") {
+      await press();
+      const bytes = await this.tab.evaluate(async end => Array.from(end.endsWith(".zip")
+        ? new Uint8Array(await zipped(bench.made).arrayBuffer()) : bench.made.find(one => one.name.endsWith(end)).bytes), name);
+      fs.writeFileSync(file, Buffer.from(bytes));
+      return file;
+    }
+    const [download] = await Promise.all([this.tab.waitForEvent("download"), press()]);
+    await download.saveAs(file);
+    return file;
+  }
+  async close(what) {
+    const asked = this.requests.filter(url => !url.startsWith("file:"));
+    check(asked.length === 0 && this.said.length === 0, `${what}: requests ${asked}, console ${this.said}`);
+    await this.context.close();
+  }
+}
+
+async function oneLog(one) {
+  check(await one.drop(path.join(ROOT, "fixtures/imu_at_rest.csv")) === "done", "the log at rest is characterized");
+  check((await one.command()).startsWith("sensorchar characterize imu_at_rest.csv"), "the command is shown");
+  await one.has("report.html", "report.json", "curves.csv", "gyro_z.sensor.yaml");
+  await one.report("gyro_z");
+  await one.run("Export for a consumer", tab => tab.getByLabel("Axes", { exact: true }).selectOption("z"));
+  check((await one.text()).includes("gyroscope_noise_density"), "Kalibr's file is shown");
+  await one.run("Figure");
+  check((await one.tab.locator("#figures img").count()) === 1, "a figure is shown");
+  await one.tab.getByRole("button", { name: "Add it as PNG" }).click();
+  await one.tab.locator("#files a", { hasText: ".png" }).waitFor();
+  await one.run("Table of a report", tab => tab.getByLabel("As", { exact: true }).selectOption("tex"));
+  check((await one.text()).includes("tabular"), "a table of LaTeX is shown");
+  await one.run("Simulate");
+  await one.run("Convert", tab => tab.getByLabel("To", { exact: true }).selectOption("npy"));
+  await one.has(".svg", ".png", ".tex", "-simulated.csv", "-converted.npy", "imu.yaml");
+  const zip = await one.saved(() => one.tab.locator("#zip").click(), "all.zip");
+  check(fs.readFileSync(zip).subarray(0, 4).toString("latin1") === "PK\x03\x04" && fs.statSync(zip).size > 1e5, "an archive of all files");
+  for (const name of ["report.json", "gyro_z.sensor.yaml"])
+    await one.saved(() => one.tab.locator("#files a", { hasText: name }).first().click(), name);
+}
+
+async function printed(one) {
+  await one.drop(path.join(ROOT, "fixtures/imu_at_rest.csv"));
+  await one.report("gyro_z");
+  const frame = one.tab.frames()[1];
+  await frame.evaluate(() => {
+    window.print = () => {
+      window.prints = (window.prints || 0) + 1;
+    };
+  });
+  await one.tab.locator("#print").click();
+  await frame.waitForFunction(() => window.prints === 1, null, { timeout: 5000 });
+}
+
+async function severalLogs(one) {
+  const files = [["left.csv", 0.1], ["middle.csv", 0.05], ["right.csv", 0.2]].map(([name, sd], i) => device(one.folder, name, sd, i + 1));
+  check(await one.drop(...files) === "done", "three logs are read");
+  await one.run("Characterize");
+  await one.has("left/report.html", "middle/report.html", "right/report.html");
+  await one.tab.getByLabel("Report", { exact: true }).selectOption({ label: "reports/right" });
+  await one.report("right.csv");
+  await one.run("Compare two reports");
+  check((await one.text()).includes("gyro_x"), "the comparison is shown");
+  await one.run("Compare devices: which one?");
+  await one.report("middle");
+}
+
+async function anArray(one) {
+  check(await one.drop(array(one.folder)) === "done", "an array is read");
+  const use = "An array: best fusion";
+  await one.run(use, tab => tab.getByRole("checkbox", { name: "truth", exact: true }).uncheck());
+  await one.has("fusion.yaml", "report.html", "report.json");
+  await one.run(use, tab => tab.getByLabel("Reference, if one channel is the truth").selectOption("truth"));
+  check((await one.command()).includes("--reference truth"), "the reference is in the command");
+  await one.report("array.csv");
+  await one.run("Fuse by a replay");
+  await one.has("-fused.csv");
+}
+
+async function aModel(one) {
+  check(await one.drop(path.join(one.folder, "gyro_z.sensor.yaml")) === "done", "a model opens");
+  check((await one.text()).includes("gyro_z"), "a model is shown");
+  await one.run("Simulate", tab => tab.getByLabel("Devices", { exact: true }).fill("3"));
+  await one.has("-simulated.csv");
+}
+
+async function aReport(one) {
+  check(await one.drop(path.join(one.folder, "report.json")) === "done", "a report opens");
+  check(/gyro\\?_z/.test(await one.text()), "its table is shown");
+  check((await one.tab.locator("#figures img").count()) === 1, "its figure is shown");
+}
+
+async function aCurve(one) {
+  await one.drop(curve(one.folder));
+  await one.run("Curve of a data sheet", tab => tab.getByLabel("Length of the record behind it").fill("1h"));
+  check(/0\.0?10|1\.0\d?e-2/.test(await one.text()), "the coefficients are shown");
+  await one.has(".sensor.yaml");
+}
+
+async function cancelled(one) {
+  const log = device(one.folder, "long.csv", 0.1, 9), rows = fs.readFileSync(log, "utf8").split("\n");
+  const more = Array.from({ length: 1500000 }, (_, i) => `${(i + 20000) / 100},${rows[1 + i % 20000].split(",")[1]}`);
+  fs.appendFileSync(log, `${more.join("\n")}\n`);
+  await one.tab.setInputFiles("#logs", [log]);
+  await one.tab.locator("#cancel").click({ timeout: LIMIT_MS });
+  await one.ended("cancel");
+  check((await one.tab.locator("#status").innerText()) === "Cancelled.", "the page says that it was cancelled");
+  check(await one.drop(path.join(ROOT, "fixtures/packed/table.csv.gz")) === "done", "it goes on after that");
+}
+
+/** Nothing but keys: the file's channel is looked at, a use is chosen and run. */
+async function byKeys(one) {
+  await one.drop(path.join(ROOT, "fixtures/imu_at_rest.csv"));
+  const reached = new Set();
+  for (let i = 0; i < 60 && !reached.has("Simulate"); ++i) {
+    await one.tab.keyboard.press("Tab");
+    reached.add(await one.tab.evaluate(() => document.activeElement.id || document.activeElement.textContent));
+  }
+  for (const name of ["logs", "Characterize", "Simulate"]) check(reached.has(name), `Tab reaches ${name}`);
+  await one.tab.keyboard.press("Enter");
+  await one.tab.locator("#run").focus();
+  await one.tab.keyboard.press("Enter");
+  await one.ended("by keys");
+}
+
+const SCENES = { oneLog, printed, severalLogs, anArray, aModel, aReport, aCurve, cancelled, byKeys };
+
+async function uses(browser, page, folder) {
+  for (const [name, scene] of Object.entries(SCENES)) {
+    const one = await new Session(browser, page, folder).open();
+    try {
+      await scene(one);
+    } catch (error) {
+      check(false, `${name}: ${String(error).split("\n").slice(0, 3).join(" ")}`);
+    }
+    await one.close(name);
+  }
+}
+
+module.exports = { uses };
