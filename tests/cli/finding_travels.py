@@ -243,7 +243,7 @@ class Log(Case):
                 cell(self.code, verb, "text", False, self.why("plot"))
             return
         figure = run(self.folder, "plot", self.out, "-o", "figure.svg", "--force")
-        none = next((f"there is no figure: {why}" for code, why in rules.NO_FIGURE.items() if code in figure.stderr), "")
+        none = next((why for code, why in rules.NO_FIGURE.items() if code in figure.stderr), "")
         cell(self.code, "plot", "text", says(figure.stdout + figure.stderr, self.finding), none)
         both = run(self.folder, "compare", self.out, self.out)
         cell(self.code, "compare", "text", says(both.stdout + both.stderr, self.finding))

@@ -87,7 +87,7 @@ KINDS = [
     ("motion", motion, "motion", [], True, True, N),
     ("gravity", gravity, "not_gravity", [], True, True, N),
     ("wraps", wraps, "phase_wraps", ["--data", "phase"], True, True, N),
-    ("frozen", frozen, "stuck", [], True, False, N),
+    ("frozen", frozen, "stuck", [], True, True, N),
     ("dead", dead, "dead_band", [], False, True, None),
     ("cut", cut, "much_saturated", [], False, True, None),
     ("outliers", outliers, "outliers_in_n", [], False, False, None),

@@ -95,7 +95,7 @@ EventSeries event_series(std::span<const double> whole, double rate_hz, std::uin
   return series;
 }
 
-std::vector<Pause> leave_out_pauses(EventSeries& series) {
+std::vector<detail::Pause> detail::leave_out_pauses(EventSeries& series) {
   constexpr double kShare = 0.1;  // of the recorded values; shorter ones are bridged
   constexpr double kShortest = 16;
   const auto point = [&](double at_s) {
@@ -134,7 +134,7 @@ std::vector<Pause> leave_out_pauses(EventSeries& series) {
   return pauses;
 }
 
-double with_pauses(std::span<const Pause> pauses, double at_s) {
+double detail::with_pauses(std::span<const Pause> pauses, double at_s) {
   double out = at_s;
   for (const Pause& pause : pauses)
     if (pause.at_s <= at_s) out += pause.length_s;

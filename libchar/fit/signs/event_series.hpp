@@ -26,6 +26,8 @@ struct EventSeries {
   };
 };
 
+namespace detail {
+
 /// A long pause: `at_s` on the axis without pauses.
 struct Pause {
   double at_s = 0, length_s = 0;
@@ -36,6 +38,8 @@ struct Pause {
 std::vector<Pause> leave_out_pauses(EventSeries& series);
 /// The instant of the record.
 double with_pauses(std::span<const Pause> pauses, double at_s);
+
+}  // namespace detail
 
 /// At most `points` means over the whole record; NaN samples are left out of them.
 EventSeries event_series(std::span<const double> record,

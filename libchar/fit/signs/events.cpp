@@ -48,13 +48,13 @@ struct Search {
   const EventOptions& options;
   SeriesGrid grid;
   std::uint64_t margin = 0;
-  std::vector<double> coefficients;  ///< k = 1..n-1 at [k-1]
-  std::vector<EventShape> gaps;      ///< the longest missing stretches, as steps
-  std::span<const Pause> pauses;     ///< that are left out of the series
+  std::vector<double> coefficients;       ///< k = 1..n-1 at [k-1]
+  std::vector<EventShape> gaps;           ///< the longest missing stretches, as steps
+  std::span<const detail::Pause> pauses;  ///< that are left out of the series
   /// Steps between the sessions: what a sensor reads when it is switched on again is an offset, and no event. They
   /// stand in front of the events in every regression.
   std::size_t offsets() const { return pauses.size(); }
-  double instant(double at_s) const { return with_pauses(pauses, at_s); }
+  double instant(double at_s) const { return detail::with_pauses(pauses, at_s); }
 };
 
 /// The share of a step that a point has.
@@ -467,7 +467,7 @@ EventSearch find_events(const EventSeries& whole,
                         const EventOptions& asked,
                         std::string_view unit) {
   EventSeries series = whole;
-  const std::vector<Pause> pauses = leave_out_pauses(series);
+  const std::vector<detail::Pause> pauses = detail::leave_out_pauses(series);
   EventOptions options = asked;
   options.ramp =
       options.ramp && pauses.empty();  // it goes through the sessions, whose means are gone
@@ -487,7 +487,7 @@ EventSearch find_events(const EventSeries& whole,
   Hypothesis now;
   now.fit.rest = search.coefficients;
   std::vector<EventShape> offsets;
-  for (const Pause& pause : pauses)
+  for (const detail::Pause& pause : pauses)
     offsets.push_back({EventKind::step, std::round((pause.at_s - series.start_s) / series.step_s)});
   now.threshold.assign(offsets.size(), 0.0);
   now.gained.assign(offsets.size(), 0.0);

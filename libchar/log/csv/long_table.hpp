@@ -11,8 +11,8 @@ std::vector<RowFilter> filters_of(const ReadOptions& options,
                                   const Dialect& dialect,
                                   const LogInfo& info);
 
-/// Fills the groups of options.kinds.group_by from the first `rows`; says which of those that come in turn are stamped apart.
-/// Throws Error(input) when they come one after the other.
+/// Fills the groups of options.kinds.group_by from the first `rows`; says which that come in turn are
+/// stamped apart. Throws Error(input) when they come one after the other.
 void choose_groups(const std::vector<Cells>& rows,
                    const ReadOptions& options,
                    Dialect& dialect,

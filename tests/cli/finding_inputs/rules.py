@@ -24,7 +24,7 @@ OF_ANOTHER_VERB = {
     "stamps_apart": ("replay", "--sensors", "A,B"),
 }
 # Errors of `plot` behind which nothing is drawn.
-NO_FIGURE = {"E0976": "unlike units share no axis", "E0984": "too many curves"}
+NO_FIGURE = {"E0976": "no figure: unlike units share no axis", "E0984": "no figure: too many curves"}
 READS = ("inspect", "allan", "psd", "fit", "characterize", "page", "convert")  # the log itself
 WEIGHS = ("export", "plot", "compare", "lot", "simulate")  # say what is doubtful, not what is worth knowing
 # Severities that a maker chooses beside that of the table.
