@@ -37,7 +37,7 @@ def drop_rows(path, draw):
 counts = {"caution": 0, "bad": 0}
 with tempfile.TemporaryDirectory() as folder:
     here = pathlib.Path(folder)
-    for kind, (unit, rate, white, flicker, walk, step, samples, suffix, options) in KINDS.items():
+    for number, (kind, (unit, rate, white, flicker, walk, step, samples, suffix, options)) in enumerate(KINDS.items()):
         model = here / "model.yaml"
         model.write_text(f"format: sensor-model\nversion: 1\nchannel: s\nunit: {unit}\nrate_hz: {rate}\n"
                          f"density: two-sided\nwhite_noise: {white}\nbias_instability: {flicker}\n"
@@ -45,8 +45,9 @@ with tempfile.TemporaryDirectory() as folder:
         said = collections.Counter()
         for seed in range(seeds):
             log, out = here / f"log{seed}{suffix}", here / "out"
-            subprocess.run([program, "simulate", model, "--samples", str(samples), "--seed", str(1000 + seed),
-                            "-o", log, "--no-truth", "--no-scene", "--force", "-q"], check=True)
+            own = 1000 * (number + 1) + seed  # kinds of one seed are one draw
+            subprocess.run([program, "simulate", model, "--samples", str(samples), "--seed", str(own), "-o", log,
+                            "--no-truth", "--no-scene", "--force", "-q"], check=True)
             if kind == "gaps":
                 drop_rows(log, random.Random(seed))
             more = ["--rate", str(rate)] if suffix == ".npy" else []

@@ -11,6 +11,7 @@ from the native one, and a number without an interval within 1e-6 of itself.
 """
 import argparse
 import json
+import math
 import os
 import pathlib
 import re
@@ -56,10 +57,12 @@ class Runs:
 
 
 def tolerance(a, b, width, where):
-    # A residual is in standard deviations: these are its interval.
-    if where.endswith("likelihood_ratio") or "/residuals/z[" in where:
-        return NEAR
     size = max(abs(a), abs(b))
+    # A residual is in standard deviations: these are its interval. A likelihood ratio scatters by twice its root.
+    if "/residuals/z[" in where:
+        return NEAR
+    if where.endswith("likelihood_ratio"):
+        return NEAR * (1 + 2 * math.sqrt(size))
     return max(NEAR * width, 1e-12 * size) if width else max(NEAR * size, 1e-300)
 
 
