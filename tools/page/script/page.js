@@ -243,8 +243,11 @@ const pagesOf = files => files.filter(({ name }) => PAGE.test(name)).sort((a, b)
 /** Prints itself when the page asks for it: from outside, nobody may. In front of the report's own policy, which allows no other script. */
 const PRINTS = "<script>addEventListener('message', event => event.data === 'print' && print());</scr" + "ipt>";
 
+/** In a fresh frame: one that was hidden is not always drawn again. */
 function showPage({ bytes }) {
-  byId("report").srcdoc = new TextDecoder().decode(bytes).replace("<head>", head => head + PRINTS);
+  const old = byId("report"), fresh = old.cloneNode();
+  fresh.srcdoc = new TextDecoder().decode(bytes).replace("<head>", head => head + PRINTS);
+  old.replaceWith(fresh);
 }
 
 /** What is shown as text: what the program says, and a single short file. */
