@@ -854,16 +854,18 @@ constexpr double kMostSaturated = 0.01;
 constexpr double kDeadBand = 0.3;
 
 /// Runs of one value, where values do not repeat anyway, as they do between coarse steps. What repeats outside of them
-/// gives the chance of a run among these samples; a record that holds all of its values has a rhythm.
+/// gives the chance of a run among these samples; a record that holds all of its values has a rhythm,
+/// and a quantity that changes little from sample to sample may rest.
 void judge_runs(const ChannelQuality& q, std::vector<Finding>& out) {
-  constexpr double kMuch = 0.01, kChance = 1e-3, kHeld = 0.5;
+  constexpr double kMuch = 0.01, kChance = 1e-3, kHeld = 0.5, kRestless = 0.5;
   if (q.distinct_values <= 16) return;
   const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
   const double repeats =
       (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
   const bool held = frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
+  const bool noisy = q.difference_sd > kRestless * q.standard_deviation;
   const bool rare =
-      q.saturated == 0 && !held && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
+      q.saturated == 0 && !held && noisy && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
   if (q.longest_stuck < (rare ? kFrozenRun : 100)) return;
   Finding stuck = finding(
       "stuck",
@@ -912,7 +914,7 @@ void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
                                       brief_text(q.maximum, 6)));
     cut.count = q.saturated;
     if (q.minimum == 0 || q.maximum == 0)
-      cut.help.push_back({"Where 0 stands for no reading, say so.", {{"missing", "0"}}});
+      cut.help.push_back({"Where 0 stands for no reading, `missing` 0 says so.", {}});
     out.push_back(std::move(cut));
   }
   // One long run is a sensor that froze; a dead band is entered again and again.

@@ -464,3 +464,27 @@ TEST_CASE("events: pauses are none, and a step inside a session has its own time
   CHECK(found.events[0].at_s == Approx(static_cast<double>(at) / 100).margin(1));
   CHECK(found.events[0].size == Approx(0.5).margin(0.15));
 }
+
+TEST_CASE("events: sessions of any length have offsets that can be told, also the last ones") {
+  test::Gaussian gauss(12);
+  for (const std::vector<std::size_t>& sessions : {std::vector<std::size_t>{4001, 2003, 1},
+                                                   {4001, 1, 3, 2003},
+                                                   {1, 3000, 5},
+                                                   {3011, 7, 1, 1}}) {
+    std::vector<double> record;
+    for (const std::size_t length : sessions) {
+      if (!record.empty())
+        record.insert(record.end(), 2000, std::numeric_limits<double>::quiet_NaN());
+      const double offset = 20 * gauss();
+      for (std::size_t i = 0; i < length; ++i)
+        record.push_back(offset + gauss() + (i > 1500 ? 5 : 0));
+    }
+    const EventSearch found = find_events(event_series(record, 100), fitted_powers());
+    INFO(sessions.size() << " sessions, the first of " << sessions[0]);
+    CHECK_FALSE(found.events.empty());
+    for (const Event& event : found.events) {
+      CHECK(std::isfinite(event.size));
+      CHECK(std::isfinite(event.sd));
+    }
+  }
+}

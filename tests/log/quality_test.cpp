@@ -131,6 +131,14 @@ TEST_CASE("short runs of one value are frozen stretches where values do not repe
   first.join(second);
   CHECK(first.finish().signs.frozen == q.signs.frozen);
   CHECK(first.finish().signs.frozen_runs == q.signs.frozen_runs);
+  std::vector<double> moves(50000);  // a robot that stops here and there
+  for (std::size_t i = 0; i < moves.size(); ++i)
+    moves[i] =
+        std::round(1e6 *
+                   std::sin(1e-3 * static_cast<double>(i - std::min<std::size_t>(i % 2000, 15)))) /
+        1e6;
+  REQUIRE(meter(moves).longest_stuck >= 15);
+  CHECK_FALSE(has(meter(moves).findings, "stuck"));
   std::vector<double> coarse = gaussian(50000, 1);
   double slow = 0;
   for (double& v : coarse)

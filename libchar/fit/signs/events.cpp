@@ -53,7 +53,8 @@ struct Search {
   std::span<const detail::Pause> pauses;  ///< that are left out of the series
   /// Steps between the sessions: what a sensor reads when it is switched on again is an offset, and no event. They
   /// stand in front of the events in every regression.
-  std::size_t offsets() const { return pauses.size(); }
+  std::vector<EventShape> offset{};
+  std::size_t offsets() const { return offset.size(); }
   double instant(double at_s) const { return detail::with_pauses(pauses, at_s); }
 };
 
@@ -130,11 +131,26 @@ double place_within(double at,
   return best;
 }
 
+/// Within the margin of a border between sessions a step is its offset.
+void leave_out_borders(const Search& search, StepScan& scan) {
+  if (search.offset.empty()) return;
+  for (const EventShape& offset : search.offset) {
+    const auto at = static_cast<std::size_t>(offset.at);
+    const std::size_t from = at - std::min<std::size_t>(at, search.margin);
+    for (std::size_t t = from; t < std::min(scan.score.size(), at + search.margin + 1); ++t)
+      scan.score[t] = 0;
+  }
+  scan.best = 0;
+  for (std::size_t t = 0; t < scan.score.size(); ++t)
+    if (std::abs(scan.score[t]) > std::abs(scan.score[scan.best])) scan.best = t;
+}
+
 /// The best step: between two points, or in a stretch that was missing.
 Candidate best_step(const Search& search,
                     const Regression& beside,
                     std::span<const double> weight) {
-  const StepScan scan = scan_steps(beside, weight, search.grid.points, search.margin);
+  StepScan scan = scan_steps(beside, weight, search.grid.points, search.margin);
+  leave_out_borders(search, scan);
   Candidate best{{EventKind::step, static_cast<double>(scan.best)},
                  scan.best_score(),
                  rough_threshold(scan.distance, search.options.false_alarm / 2, StepScan::kEvery)};
@@ -486,15 +502,17 @@ EventSearch find_events(const EventSeries& whole,
 
   Hypothesis now;
   now.fit.rest = search.coefficients;
-  std::vector<EventShape> offsets;
-  for (const detail::Pause& pause : pauses)
-    offsets.push_back({EventKind::step, std::round((pause.at_s - series.start_s) / series.step_s)});
-  now.threshold.assign(offsets.size(), 0.0);
-  now.gained.assign(offsets.size(), 0.0);
-  now.not_told.resize(offsets.size());
+  for (const detail::Pause& pause : pauses) {
+    const double at = std::round((pause.at_s - series.start_s) / series.step_s);
+    const double last = search.offset.empty() ? 0 : search.offset.back().at;
+    if (at > last && at < static_cast<double>(n)) search.offset.push_back({EventKind::step, at});
+  }
+  now.threshold.assign(search.offsets(), 0.0);
+  now.gained.assign(search.offsets(), 0.0);
+  now.not_told.resize(search.offsets());
   fit_both(search, {}, now);
   // Offsets look like slow noise at first, which hides them.
-  for (int i = 0; i < kRounds && !offsets.empty(); ++i) fit_both(search, offsets, now);
+  for (int i = 0; i < kRounds && !search.offset.empty(); ++i) fit_both(search, search.offset, now);
   EventSearch found;
   const int most = now.ends > kMostOfEnds ? -1 : options.most;
   for (int round = 0; round <= most; ++round) {
