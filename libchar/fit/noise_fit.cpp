@@ -411,8 +411,7 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
                         FitWorkspace* workspace) {
   if (!options.clock) return fit_offered(bins, rate_hz, samples, allan, options, workspace);
   std::vector<PowerBin> lent = bins;
-  const std::vector<double> units = flicker_phase_units(bins, rate_hz);
-  for (std::size_t j = 0; j < lent.size(); ++j) lent[j].unit[kRamp] = units[j];
+  lend_flicker_phase(rate_hz, lent);
   FitOptions offered = options;
   offered.terms[kRamp] = offered.terms[kQuantization] = true;
   return fit_offered(lent, rate_hz, samples, allan, offered, workspace);

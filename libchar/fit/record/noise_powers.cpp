@@ -10,6 +10,7 @@
 #include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
+#include "libchar/fit/detail/record/ends.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
@@ -39,6 +40,11 @@ constexpr std::array kSeriesTerms = {Term::white, Term::flicker, Term::walk, Ter
 struct SeriesUnits {
   std::uint64_t points = 0, per_point = 0;
   double step_s = 0;
+  bool ends_free = false;
+  bool of(const EventSeries& series) const {
+    return points == series.value.size() && per_point == series.per_point &&
+           step_s == series.step_s && ends_free == series.ends_free;
+  }
   std::array<std::vector<double>, kSeriesTerms.size()> power;  ///< k = 1..n-1 at [k-1]
   std::vector<std::size_t> edge;
   std::vector<PowerBin> bins;  ///< without energies
@@ -53,9 +59,13 @@ SeriesUnits units_of(const EventSeries& series) {
   units.points = series.value.size();
   units.per_point = series.per_point;
   units.step_s = series.step_s;
+  units.ends_free = series.ends_free;
   std::vector<std::vector<double>> power =
       at_every_k(units.points, kSeriesTerms.size(), [&](double k, std::span<double> out) {
-        const auto unit = mean_unit_powers(k, units.points, series.per_point, 1 / rate_of(series));
+        auto unit = mean_unit_powers(k, units.points, series.per_point, 1 / rate_of(series));
+        if (series.ends_free)
+          unit[static_cast<std::size_t>(Term::quantization)] =
+              detail::quantization_without_ends(k, units.points, series.step_s);
         for (std::size_t i = 0; i < kSeriesTerms.size(); ++i)
           out[i] = unit[static_cast<std::size_t>(kSeriesTerms[i])];
       });
@@ -90,8 +100,9 @@ EventSeries::Noise noise_of(const Mixture& theta, const SeriesUnits& units) {
   for (std::size_t i = 0; i < kSeriesTerms.size(); ++i) {
     const double square = theta[static_cast<std::size_t>(kSeriesTerms[i])];
     for (std::size_t k = 0; k < power.size(); ++k) power[k] += square * units.power[i][k];
-    if (kSeriesTerms[i] == Term::quantization && power[0] > 0)
-      noise.ends = square * units.power[i][0] / power[0];
+    if (kSeriesTerms[i] != Term::quantization || units.ends_free) continue;
+    const double least = *std::min_element(power.begin(), power.end());
+    if (least > 0) noise.ends = square * units.power[i][0] / least;
   }
   return noise;
 }
@@ -116,10 +127,10 @@ NoisePowers fitted_powers() {
   const auto kept = std::make_shared<SeriesUnits>();
   return [kept](const EventSeries& series) {
     constexpr std::size_t kFewestBins = 32, kHalfOctave = 4;
-    if (kept->points != series.value.size() || kept->per_point != series.per_point ||
-        kept->step_s != series.step_s)
-      *kept = units_of(series);
+    if (!kept->of(series)) *kept = units_of(series);
     std::vector<PowerBin> bins = bins_of(series, *kept);
+    // The slowest even and odd one went with the ends.
+    if (series.ends_free) bins.erase(bins.begin(), bins.begin() + 2);
     const TermSet terms = {true, true, true, true, false};
     ScoringResult fit = score(bin_problem(bins), terms);
     while (bins.size() >= kFewestBins + kHalfOctave && !describes(bins, fit.at.theta)) {

@@ -154,13 +154,14 @@ void append_without_cycles(const PooledPower& power, double rate_hz, ClippedBins
 
 }  // namespace
 
-std::vector<PooledPower> whole_powers(std::span<const double> record) {
+std::vector<PooledPower> whole_powers(std::span<const double> record,
+                                      const detail::EndNoise* ends) {
   std::vector<PooledPower> powers;
   std::vector<double> segment;
   std::uint64_t gap = 0, samples = 0;
   const auto end_segment = [&] {
     if (segment.size() >= kSmallestTransform)
-      powers.push_back(record_power(segment, 1, 1, segment.size()));
+      powers.push_back(record_power(segment, 1, 1, segment.size(), ends));
     segment.clear();
   };
   while (!record.empty()) {

@@ -10,6 +10,10 @@
 
 namespace libchar {
 
+namespace detail {
+struct EndNoise;
+}
+
 /// A bin of mean squared DCT-II coefficients and its expectation per unit theta: all the likelihood
 /// needs.
 struct PowerBin {
@@ -40,6 +44,9 @@ struct PooledPower {
   /// slow cycles, and `mean` without them; empty: none
   std::vector<Cycle> cycles = {};
   std::vector<double> without_cycles = {};
+  /// the two ends were taken out of `mean` (detail/record/ends.hpp): with this share of each coefficient k, at [k]; empty:
+  /// they are in
+  std::vector<double> with_ends = {};
 };
 
 /// Bins without slow cycles and the coefficients of spectral lines.
@@ -55,8 +62,9 @@ struct ClippedBins {
 
 /// Of a record one exact transform, k >= 1. Missing samples: short ones are closed up
 /// (concatenated), at a long gap a new record starts and likelihoods add. A record in leaves:
-/// powers_of (power_sums.hpp).
-std::vector<PooledPower> whole_powers(std::span<const double> record);
+/// powers_of (power_sums.hpp). `ends`: the ends of a record of this noise are taken out.
+std::vector<PooledPower> whole_powers(std::span<const double> record,
+                                      const detail::EndNoise* ends = nullptr);
 
 std::vector<PowerBin> power_bins(std::span<const PooledPower> powers, double rate_hz);
 /// The same of a record as a whole.

@@ -12,11 +12,16 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/bridge.hpp"
+#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/record/dct_means.hpp"
+#include "libchar/fit/detail/record/ends.hpp"
 #include "libchar/fit/detail/record/record_means.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
+#include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
 namespace {
@@ -158,6 +163,54 @@ void report_stationarity(NoiseFit& fit) {
   fit.findings.push_back(std::move(changed));
 }
 
+constexpr double kMostOfEnds = 0.01;  ///< share of the slowest coefficient
+
+/// What the terms make of a record, whether they describe it or not.
+detail::EndNoise end_noise(std::span<const PooledPower> powers,
+                           double rate_hz,
+                           const FitOptions& options) {
+  std::vector<PowerBin> bins = power_bins(powers, rate_hz);
+  if (options.clock) lend_flicker_phase(rate_hz, bins);
+  const TermSet terms = {true, true, true, true, options.clock};
+  return {score(bin_problem(bins), terms).at.theta, 1 / rate_hz};
+}
+
+std::span<const double> longest_run(std::span<const double> record) {
+  std::span<const double> longest;
+  while (!record.empty()) {
+    const std::span<const double> run = record.first(present_run(record));
+    if (run.size() > longest.size()) longest = run;
+    record = record.subspan(std::max<std::size_t>(run.size(), 1));
+  }
+  return longest;
+}
+
+/// Where phase noise is so strong that its ends are in the slow coefficients, these are without them.
+std::vector<PooledPower> powers_without_ends(std::span<const double> record,
+                                             double rate_hz,
+                                             const FitOptions& options) {
+  constexpr std::size_t kFewest = 64;
+  std::vector<PooledPower> powers = whole_powers(record);
+  const std::span<const double> run = longest_run(record);
+  if (run.size() < kFewest) return powers;
+  detail::EndNoise noise = end_noise(powers, rate_hz, options);
+  if (!(detail::share_of_ends(noise, run.size()) > kMostOfEnds)) return powers;
+  Dct dct(run.size());
+  noise = detail::noise_with_ends(dct.transform(run), noise, options.clock);
+  return whole_powers(record, &noise);
+}
+
+std::vector<PooledPower> powers_without_ends(PowerSums sums,
+                                             std::span<const Event> events,
+                                             double rate_hz,
+                                             const FitOptions& options) {
+  std::vector<PooledPower> powers = powers_of(std::move(sums), events, rate_hz);
+  const detail::EndNoise noise = end_noise(powers, rate_hz, options);
+  for (PooledPower& power : powers) detail::leave_out_ends(noise, power);
+  std::erase_if(powers, [](const PooledPower& power) { return power.mean.empty(); });
+  return powers;
+}
+
 NoiseFit fit_whole(std::span<const double> record,
                    double rate_hz,
                    const AllanCurve* allan,
@@ -183,9 +236,10 @@ NoiseFit fit_whole(std::span<const double> record,
   const bool complete = despiked.samples.empty() ? missing == 0 : present_run(data) == data.size();
   if (options.remedies && !complete) filled = bridged(data);
   const std::span<const double> present = filled.empty() ? data : std::span<const double>(filled);
-  const std::vector<PooledPower> powers = present.size() > kLeafSamples
-                                              ? powers_of(record_sums(present, false).plain.bins)
-                                              : whole_powers(present);
+  const std::vector<PooledPower> powers =
+      present.size() > kLeafSamples
+          ? powers_without_ends(record_sums(present, false).plain.bins, {}, rate_hz, options)
+          : powers_without_ends(present, rate_hz, options);
   NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace, means.temperature);
   if (!options.clock) {
     const bool counted = options.difference_kurtosis && as_recorded;
@@ -222,7 +276,8 @@ NoiseFit fit_sums(RecordSums sums,
                          : curve_without(used, events, rate_hz);
     allan = &own;
   }
-  const std::vector<PooledPower> powers = powers_of(std::move(used.bins), events, rate_hz);
+  const std::vector<PooledPower> powers =
+      powers_without_ends(std::move(used.bins), events, rate_hz, options);
   NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace);
   // Spikes and steps are in the kurtosis of the differences; what it would be without them is not
   // known.

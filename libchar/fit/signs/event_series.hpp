@@ -16,12 +16,14 @@ struct EventSeries {
   double step_s = 0;                 ///< between values
   std::uint64_t per_point = 1;       ///< samples averaged in a value
   std::vector<Interval> unseen_s{};  ///< stretches that were missing, filled by straight lines
+  bool ends_free =
+      false;  ///< whatever phase noise puts into the first and the last value was taken out
 
   /// What noise puts into the orthonormal DCT-II of n values.
   struct Noise {
     std::vector<double> power;  ///< E c_k^2, k = 1..n-1 at [k-1]
-    /// Share of the slowest power that is the rounding (a clock's phase noise) of the first and the
-    /// last sample: it moves all slow coefficients at once, as an event does.
+    /// Share of the rounding (a clock's phase noise) of the first and the last sample, where it is largest: it moves all
+    /// slow coefficients at once, as an event does.
     double ends = 0;
   };
 };

@@ -26,7 +26,8 @@ namespace {
 constexpr double kNotTold = 6;  ///< of LR: odds of twenty to one
 constexpr double kGate =
     0.7;  ///< share of a threshold that a score must reach to be looked at again
-constexpr double kMostOfEnds = 0.1;  ///< of EventSeries::Noise: beyond, there is no search
+constexpr double kMostOfEnds =
+    1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
 constexpr int kRounds = 4;
 constexpr std::size_t kMostPauses = 16;  ///< beyond, sessions are too many for offsets of their own
 constexpr double kTauDrop = 3.8415;      ///< chi-square of one degree of freedom, 95 %
@@ -43,7 +44,7 @@ struct Hypothesis {
 };
 
 struct Search {
-  const EventSeries& series;
+  EventSeries& series;
   const NoisePowers& powers;
   const EventOptions& options;
   SeriesGrid grid;
@@ -476,6 +477,14 @@ void judge_many(const Search& search,
   }
 }
 
+/// What phase noise puts into the first and the last value moves all slow coefficients at once, as an event does: both
+/// are free, as steps behind and in front of them are.
+void free_ends(Search& search) {
+  search.series.ends_free = true;
+  search.offset.insert(search.offset.begin(), {EventKind::step, 1});
+  search.offset.push_back({EventKind::step, static_cast<double>(search.grid.points - 1)});
+}
+
 }  // namespace
 
 EventSearch find_events(const EventSeries& whole,
@@ -507,18 +516,18 @@ EventSearch find_events(const EventSeries& whole,
     const double last = search.offset.empty() ? 0 : search.offset.back().at;
     if (at > last && at < static_cast<double>(n)) search.offset.push_back({EventKind::step, at});
   }
+  fit_both(search, {}, now);
+  if (now.ends > kMostOfEnds) free_ends(search);
   now.threshold.assign(search.offsets(), 0.0);
   now.gained.assign(search.offsets(), 0.0);
   now.not_told.resize(search.offsets());
-  fit_both(search, {}, now);
   // Offsets look like slow noise at first, which hides them.
   for (int i = 0; i < kRounds && !search.offset.empty(); ++i) fit_both(search, search.offset, now);
   EventSearch found;
-  const int most = now.ends > kMostOfEnds ? -1 : options.most;
-  for (int round = 0; round <= most; ++round) {
+  for (int round = 0; round <= options.most; ++round) {
     std::optional<Trial> next = next_event(search, now);
     if (!next) break;
-    found.more = round == most;
+    found.more = round == options.most;
     if (found.more) break;
     now = std::move(next->with);
     place_again(search, now);

@@ -569,6 +569,16 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   return trial->band;
 }
 
+double chance_of(const Trial& trial) {
+  return std::min(trial.band.goodness.p, trial.band.top.p);
+}
+
+Band passing(const Trial& trial) {
+  Band band = trial.band;
+  band.passes = true;
+  return band;
+}
+
 Band passing_band(const std::vector<PowerBin>& bins,
                   double rate_hz,
                   const TermSet& terms,
@@ -583,15 +593,13 @@ Band passing_band(const std::vector<PowerBin>& bins,
   if (shelf.rising > options.high_pass)
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz))
       return *falling;
-  if (std::min(unshaped->band.goodness.p, unshaped->band.top.p) >= options.probability_unshaped &&
-      !(shelf.largest > options.shelf)) {
-    Band band = unshaped->band;
-    band.passes = true;
-    return band;
-  }
-  Band quantized = whole;
-  quantized.quantized = true;
-  if (const auto trial = search.at(quantized); trial && trial->band.passes) return trial->band;
+  if (chance_of(*unshaped) >= options.probability_unshaped && !(shelf.largest > options.shelf))
+    return passing(*unshaped);
+  Band with_quantization = whole;
+  with_quantization.quantized = true;
+  const std::optional<Trial> quantized = search.at(with_quantization);
+  if (quantized && chance_of(*quantized) >= options.probability_unshaped)
+    return passing(*quantized);
   if (const auto named = named_filter(bins, rate_hz, terms, options);
       named && named->band.passes && explains_nulls(bins, rate_hz, *named))
     return named->band;
@@ -609,14 +617,12 @@ Band passing_band(const std::vector<PowerBin>& bins,
   if (!best || best->top_hz < rate_hz / 2 * 0.99) best = search.wider_between_peaks(whole, best);
   // One clean record in a hundred is here by chance, and where the chance is in its slow part only
   // a deep cut takes it away. Filters and motion are told from chance by far less than a millionth.
-  const double chance = std::min(unshaped->band.goodness.p, unshaped->band.top.p);
-  const double left = best ? best->top_hz / (rate_hz / 2) : 0;
+  const Trial& plain =
+      quantized && chance_of(*quantized) > chance_of(*unshaped) ? *quantized : *unshaped;
+  const double chance = chance_of(plain), left = best ? best->top_hz / (rate_hz / 2) : 0;
   if ((chance >= options.misfit && left < kDeepCut) ||
-      (chance >= options.clear_misfit && left < kDeepest)) {
-    Band band = unshaped->band;
-    band.passes = true;
-    return band;
-  }
+      (chance >= options.clear_misfit && left < kDeepest))
+    return passing(plain);
   if (best) return search.with_margin(*best);
   return search.closest ? search.closest->band : unshaped->band;
 }

@@ -173,6 +173,12 @@ std::vector<double> flicker_phase_units(const std::vector<PowerBin>& bins, doubl
   return out;
 }
 
+void lend_flicker_phase(double rate_hz, std::vector<PowerBin>& bins) {
+  const std::vector<double> units = flicker_phase_units(bins, rate_hz);
+  for (std::size_t j = 0; j < bins.size(); ++j)
+    bins[j].unit[static_cast<std::size_t>(Term::ramp)] = units[j];
+}
+
 namespace {
 
 using std::numbers::egamma;

@@ -27,6 +27,9 @@ double flicker_phase_dct_mean(double k, std::uint64_t n, double dt_s);
 /// Means of every bin, in the order of the bins.
 std::vector<double> flicker_phase_units(const std::vector<PowerBin>& bins, double rate_hz);
 
+/// The bins of a clock's frequency: the place of the ramp, which a clock has none of, holds flicker phase noise.
+void lend_flicker_phase(double rate_hz, std::vector<PowerBin>& bins);
+
 /// Si(pi k) for integer k >= 0, 1e-15 relative.
 double sine_integral_at_pi(std::uint64_t k);
 

@@ -8,6 +8,7 @@
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/detail/record/cycles.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
+#include "libchar/fit/detail/record/ends.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
@@ -20,6 +21,9 @@ constexpr std::uint64_t kExactBelow =
 
 /// Share of the events' energy below which the noise beside it is not looked at.
 constexpr double kLeastNoise = 0.05;
+
+/// A coefficient that lost more than this share with the ends says next to nothing.
+constexpr double kMostWithEnds = 0.5;
 
 /// First coefficient of the bin after the one that starts at k.
 std::uint64_t next_edge(std::uint64_t k) {
@@ -99,12 +103,15 @@ void append_bins_of(const PooledPower& power,
   for (std::uint64_t lo = power.first, hi = 0; lo < end; lo = hi) {
     hi = std::min(end, next_edge(lo));
     if (end - hi < (hi - lo) / 4) hi = end;  // no sliver at the end
-    double sum = 0, of_events = 0;
+    double sum = 0, of_events = 0, with_ends = 0;
     std::uint64_t kept = 0;
     for (std::uint64_t k = lo; k < hi; ++k) {
       if (!clipped.empty() && clipped[k - power.first] != 0) continue;
-      sum += power.mean[k - power.first];
+      const double gone = k < power.with_ends.size() ? power.with_ends[k] : 0;
+      if (gone > kMostWithEnds) continue;
+      sum += power.mean[k - power.first] / (1 - gone);
       if (!power.of_events.empty()) of_events += power.of_events[k - power.first];
+      with_ends += gone;
       ++kept;
     }
     const double noise = sum - of_events;
@@ -118,7 +125,7 @@ void append_bins_of(const PooledPower& power,
     bin.energy = noise / static_cast<double>(kept);
     // sum (n_k + e_k)² - e_k²: the variance of n_k² is 2 P², that of 2 n_k e_k is 4 P e_k².
     const double wider = of_events > 0 ? 1 + 2 * of_events / noise : 1;
-    bin.dof = static_cast<double>(kept * power.pooled) / wider;
+    bin.dof = (static_cast<double>(kept * power.pooled) - with_ends) / wider;
     bin.first = lo;
     bin.end = hi;
     bin.length = power.length;
@@ -135,6 +142,12 @@ void append_power_bins(const PooledPower& power,
                        const std::vector<char>& clipped,
                        std::vector<PowerBin>& bins) {
   const double dt_s = 1 / rate_hz;
+  const auto without_ends = [&](double k, Unit unit) {
+    if (!power.with_ends.empty())
+      unit[static_cast<std::size_t>(Term::quantization)] =
+          detail::quantization_without_ends(k, power.length, dt_s);
+    return unit;
+  };
   if (power.spacing > 1 || power.length <= kExactBelow) {
     const BlockMeanDct exact(power.length, power.spacing, dt_s);
     append_bins_of(
@@ -142,7 +155,7 @@ void append_power_bins(const PooledPower& power,
         rate_hz,
         clipped,
         false,
-        [&](double k) { return exact.mean(static_cast<std::uint64_t>(k)); },
+        [&](double k) { return without_ends(k, exact.mean(static_cast<std::uint64_t>(k))); },
         bins);
   } else {
     append_bins_of(
@@ -150,7 +163,7 @@ void append_power_bins(const PooledPower& power,
         rate_hz,
         clipped,
         true,
-        [&](double k) { return dct_mean(k, power.length, dt_s); },
+        [&](double k) { return without_ends(k, dct_mean(k, power.length, dt_s)); },
         bins);
   }
 }
@@ -178,10 +191,17 @@ std::uint64_t end_of_left(std::uint64_t points, std::uint64_t per_mean, std::uin
 PooledPower record_power(std::span<const double> points,
                          std::uint64_t spacing,
                          std::uint64_t first,
-                         std::uint64_t end) {
+                         std::uint64_t end,
+                         const detail::EndNoise* ends) {
   PooledPower power{points.size(), spacing, first, 1, {}};
   Dct plan(points.size());
-  const std::span<const double> c = plan.transform(points);
+  std::span<const double> c = plan.transform(points);
+  std::vector<double> without_ends;
+  if (ends != nullptr) {
+    without_ends.assign(c.begin(), c.end());
+    power.with_ends = detail::take_out_ends(without_ends, *ends);
+    c = without_ends;
+  }
   power.mean.reserve(end > first ? end - first : 0);
   for (std::uint64_t k = first; k < end; ++k) power.mean.push_back(c[k] * c[k]);
   if (first > 1 || power.mean.empty()) return power;

@@ -33,11 +33,13 @@ std::uint64_t first_kept(std::uint64_t length, std::uint64_t block);
 /// of `block` leave to it.
 std::uint64_t end_of_left(std::uint64_t points, std::uint64_t per_mean, std::uint64_t block);
 
-/// Squared coefficients first … end-1 of one transform of all points.
+/// Squared coefficients first … end-1 of one transform of all points, which are single samples where `ends` are to be
+/// taken out.
 PooledPower record_power(std::span<const double> points,
                          std::uint64_t spacing,
                          std::uint64_t first,
-                         std::uint64_t end);
+                         std::uint64_t end,
+                         const detail::EndNoise* ends = nullptr);
 
 /// Means of transforms of `length` points from coefficient `first` on; nothing without a transform.
 void append_pooled(const PooledSums& sums,
