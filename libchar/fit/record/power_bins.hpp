@@ -44,8 +44,8 @@ struct PooledPower {
   /// slow cycles, and `mean` without them; empty: none
   std::vector<Cycle> cycles = {};
   std::vector<double> without_cycles = {};
-  /// the two ends were taken out of `mean` (detail/record/ends.hpp): with this share of each coefficient k, at [k]; empty:
-  /// they are in
+  /// the two ends were taken out of `mean` (detail/record/ends.hpp): with this share of each
+  /// coefficient k, at [k]; empty: they are in
   std::vector<double> with_ends = {};
 };
 

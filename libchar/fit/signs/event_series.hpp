@@ -22,8 +22,8 @@ struct EventSeries {
   /// What noise puts into the orthonormal DCT-II of n values.
   struct Noise {
     std::vector<double> power;  ///< E c_k^2, k = 1..n-1 at [k-1]
-    /// Share of the rounding (a clock's phase noise) of the first and the last sample, where it is largest: it moves all
-    /// slow coefficients at once, as an event does.
+    /// Share of the rounding (a clock's phase noise) of the first and the last sample, where it is
+    /// largest: it moves all slow coefficients at once, as an event does.
     double ends = 0;
   };
 };
