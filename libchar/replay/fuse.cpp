@@ -517,8 +517,11 @@ void Fusing::check_readings() {
     units.push_back(result_.sensors[i].unit);
     learnt.push_back(learnt_.sensors[i].reading);
   }
-  detail::warn_of_changes(
-      check_.readings->changes(learnt), names, units, instants_->info().rate_hz, result_.warnings);
+  detail::warn_of_changes(check_.readings->changes(learnt),
+                          names,
+                          units,
+                          {0, instants_->info().rate_hz},
+                          result_.warnings);
 }
 
 void Fusing::tell() {

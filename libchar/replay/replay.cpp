@@ -203,7 +203,14 @@ class Replay {
         plan_.learn_from, plan_.learn_to, kLearningBlock, passing, [&](const InstantBlock& b) {
           for (AlgorithmRun& run : runs_)
             if (run.planned().learns_before()) run.learn(b.samples, b.truth);
+          if (watched_from() < plan_.run_from) watch_readings(b.samples);
         });
+  }
+
+  // A sensor is judged by most of what is known of it: the run, and what directly precedes it.
+  std::int64_t watched_from() const {
+    const bool learns = plan_.learn_to > plan_.learn_from && plan_.learn_to == plan_.run_from;
+    return learns ? plan_.learn_from : plan_.run_from;
   }
 
   void learn_on_run() {
@@ -242,14 +249,22 @@ class Replay {
   }
 
   void watch_sensors(const Eigen::MatrixXd& samples) {
-    const auto push = [this](const Eigen::MatrixXd& live) {
-      if (watch_.steps) watch_.steps->push(live);
-      if (watch_.readings) watch_.readings->push(live);
-    };
-    if (plan_.live.empty())
-      push(samples);
-    else
-      push(samples(plan_.live, Eigen::all));
+    if (watch_.steps) with_live(samples, [this](const auto& live) { watch_.steps->push(live); });
+    watch_readings(samples);
+  }
+
+  void watch_readings(const Eigen::MatrixXd& samples) {
+    const fusion::Array live = subset(plan_.array, plan_.live);
+    if (!watch_.readings && !scene_.tilt && live.one_common_input() && live.channels >= 3)
+      watch_.readings.emplace(live.channels, plan_.run_to - watched_from());
+    if (watch_.readings)
+      with_live(samples, [this](const auto& rows) { watch_.readings->push(rows); });
+  }
+
+  template <class Work>
+  void with_live(const Eigen::MatrixXd& samples, const Work& work) const {
+    if (plan_.live.empty()) return work(samples);
+    work(Eigen::MatrixXd(samples(plan_.live, Eigen::all)));
   }
 
   // What another log can be fused with.
@@ -269,8 +284,6 @@ class Replay {
     if (workspace_.estimates != nullptr) begin_estimates();
     const fusion::Array live = subset(plan_.array, plan_.live);
     if (!scene_.tilt) watch_.steps.emplace(live.h(), plan_.run_to - plan_.run_from);
-    if (!scene_.tilt && live.one_common_input() && live.channels >= 3)
-      watch_.readings.emplace(live.channels, plan_.run_to - plan_.run_from);
     if (!scene_.tilt) detection_.emplace(plan_, instants_.source().known_faults());
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
     instants_.pass(plan_.run_from, plan_.run_to, plan_.block, passing, [&](const InstantBlock& b) {
@@ -391,6 +404,7 @@ class Replay {
     AlgorithmResult result;
     Meters meters;
   };
+  void tell_readings(ReplayResult& out) const;
   ReplayResult collect();
   void refuse_sizes() const;
   void add_facts(ReplayResult& out) const;
@@ -593,6 +607,23 @@ void add_doubts_of_chosen(ReplayResult& out) {
   }
 }
 
+// Faults that the scene knows are answered elsewhere.
+void Replay::tell_readings(ReplayResult& out) const {
+  if (!out.faults.empty()) return;
+  std::vector<std::string> names, units;
+  for (std::size_t k = 0; k < out.sensors.size(); ++k) {
+    if (!plan_.live.empty() &&
+        std::find(plan_.live.begin(), plan_.live.end(), static_cast<Eigen::Index>(k)) ==
+            plan_.live.end())
+      continue;
+    names.push_back(out.sensors[k].name);
+    units.push_back(out.sensors[k].unit);
+  }
+  const double start_s =
+      instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
+  detail::warn_of_readings(*watch_.readings, names, units, {start_s, out.rate_hz}, out.warnings);
+}
+
 ReplayResult Replay::collect() {
   ScoreOptions scoring;
   for (const std::int64_t start : plan_.array.section_starts)
@@ -618,7 +649,10 @@ ReplayResult Replay::collect() {
   add_tracks(out);
   if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, out.end_s());
   if (watch_.steps) note_step_noise(watch_.steps->result(), learnt_);
-  if (watch_.readings) note_readings(watch_.readings->result(), learnt_);
+  if (watch_.readings) {
+    note_readings(watch_.readings->result(), learnt_);
+    tell_readings(out);
+  }
   for (const AlgorithmRun& run : runs_)
     for (LearntAlgorithm& algorithm : learnt_.algorithms)
       if (run.planned().asked && algorithm.label == run.planned().label)
@@ -626,7 +660,7 @@ ReplayResult Replay::collect() {
   out.learnt = learnt_;
   add_doubts_of_chosen(out);
   out.learnt.findings = out.warnings.list();
-  if (out.best && !out.offsets_decide) out.learnt.recommended = out.algorithms[*out.best].label;
+  if (out.best) out.learnt.recommended = out.algorithms[*out.best].label;
   out.work.passes = passes_ + (scene_.simulate ? 0 : 1);
   for (const AlgorithmRun& bound : optimum_) {
     out.work.learnt += bound.learnt();

@@ -215,8 +215,11 @@ struct ReplayFacts {
   std::string best_fusion;
   /// the 95 % interval of its RMSE over that of the best sensor; one input and a reference
   std::optional<Interval> best_over_sensor;
-  /// no method is called best: without a reference, differences between the sensors' means are nearly all that is seen
+  /// without a reference, differences between the sensors' means are nearly all that is seen
   bool offsets_decide = false;
+  /// the best method is not that of the smallest error but one that a failing sensor does not lead
+  /// astray: without a reference it has no score, or offsets decide the scores
+  bool chosen_as_robust = false;
 
   double end_s() const { return start_s + static_cast<double>(instants) / rate_hz; }
 };

@@ -20,6 +20,7 @@ namespace {
 
 struct Sensor {
   double noise = 1, offset = 0, gain = 1;
+  double jump = 0;  ///< of the offset, from six tenths of the log on
 };
 
 // A recording of sensors that see one slow signal, beside the signal itself.
@@ -33,8 +34,8 @@ std::string array_log(const std::vector<Sensor>& sensors, std::size_t rows, std:
     out += std::to_string(static_cast<double>(k) * 0.01);
     char cell[32];
     for (const Sensor& sensor : sensors) {
-      std::snprintf(
-          cell, sizeof cell, ",%.9g", sensor.gain * x + sensor.offset + sensor.noise * gauss());
+      const double offset = sensor.offset + (10 * k < 6 * rows ? 0 : sensor.jump);
+      std::snprintf(cell, sizeof cell, ",%.9g", sensor.gain * x + offset + sensor.noise * gauss());
       out += cell;
     }
     std::snprintf(cell, sizeof cell, ",%.9g\n", x);
@@ -90,12 +91,54 @@ TEST_CASE("verdict: offsets between the sensors are asked for, not compared") {
   bench.put("array.csv", array_log({{1, -1000}, {1, 300}, {1, 900}, {1, 0}}, 4000, 3));
   ReplayResult result = replay(bench.read(scene_of(4, "algorithms: [mean, median]\n")));
   CHECK(result.offsets_decide);
+  CHECK(result.chosen_as_robust);
+  REQUIRE(result.best);
+  CHECK(result.algorithms[*result.best].label == "median");
+  CHECK_THAT(test::verdict_of(result, false),
+             StartsWith("Use median") && Contains("Scores do not decide") &&
+                 Contains("a stretch at rest"));
+  result = replay(bench.read(scene_of(4, "algorithms: [mean]\n")));
   CHECK_FALSE(result.best);
   CHECK_THAT(test::verdict_of(result, false),
              StartsWith("No method is recommended") && Contains("a stretch at rest"));
   result = replay(bench.read(scene_of(4, "rest: [0, 10]\nalgorithms: [mean, median]\n")));
   CHECK_FALSE(result.offsets_decide);
   CHECK(result.best);
+}
+
+TEST_CASE(
+    "verdict: of three sensors the method that withstands a failing one is chosen, and the one is "
+    "named") {
+  // Leave-one-out leaves two sensors, too few for the methods that watch each other.
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const test::SceneBench bench;
+    bench.put("array.csv", array_log({{0.5}, {1, 0, 1, 25}, {1}}, 12000, seed));
+    const ReplayResult result =
+        replay(bench.read(scene_of(3, "algorithms: [mean, median, minque, blind-calibration]\n")));
+    REQUIRE(result.best);
+    CHECK(result.chosen_as_robust);
+    CHECK(result.algorithms[*result.best].label == "minque");
+    const Finding* failing = result.warnings.find("sensor_failing");
+    REQUIRE(failing != nullptr);
+    CHECK(failing->count == 1);
+    CHECK_THAT(test::verdict_of(result, false),
+               StartsWith("Use minque: a sensor that fails") && Contains("s2: up to 2"));
+  }
+}
+
+TEST_CASE(
+    "verdict: sound sensors with offsets, gains and noise of their own are none that fail or stand "
+    "apart") {
+  std::size_t said = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const test::SceneBench bench;
+    bench.put("array.csv",
+              array_log({{1, 1}, {0.7, -2}, {1.5, 0.5}, {1, 3}, {1.2, -1}}, 8000, seed));
+    const ReplayResult result = replay(bench.read(scene_of(5, "algorithms: [mean, median]\n")));
+    said += result.warnings.find("sensor_failing") != nullptr ? 1 : 0;
+    said += result.warnings.find("sensor_apart") != nullptr ? 1 : 0;
+  }
+  CHECK(said == 0);
 }
 
 TEST_CASE("verdict: one per cent is no difference") {

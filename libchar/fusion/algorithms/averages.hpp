@@ -62,7 +62,8 @@ struct Median {
                                            .title = "Median",
                                            .source = "Tukey 1977",
                                            .complexity = "O(n)",
-                                           .needs = {.accepts_missing = true}};
+                                           .needs = {.accepts_missing = true},
+                                           .withstands = 1};
   explicit Median(const Array& array) : sorted_(static_cast<std::size_t>(array.channels)) {}
   Estimate step(const Sample& y);
 

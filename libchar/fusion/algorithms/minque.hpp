@@ -24,7 +24,8 @@ struct Minque {
                                            .needs = {.max_channels = kMostPaired,
                                                      .more_than_inputs = 2,
                                                      .observation_matrix = true,
-                                                     .accepts_missing = true}};
+                                                     .accepts_missing = true},
+                                           .withstands = 2};
   static constexpr std::array options{
       Option{"gamma", "", 0.999, 0.5, 0.9999999, "memory of the variances: 1/(1 - gamma) instants"},
       Option{"damping",

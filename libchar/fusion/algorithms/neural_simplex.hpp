@@ -30,7 +30,8 @@ struct NeuralSimplex {
                 .more_than_inputs = 2,
                 .reference_helps = true,
                 .accepts_missing = true},
-      .learning_complexity = "O((n h)^2) an iteration"};
+      .learning_complexity = "O((n h)^2) an iteration",
+      .withstands = 3};
   static constexpr std::array options{
       Option{"neurons", "", 8, 1, 64, "h: hidden neurons of the network", true},
       Option{"past",

@@ -208,10 +208,40 @@ std::string offsets_sentence(const ReplayResult& r) {
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && a.blind) share = std::max(share, a.blind->offset_share);
   return fmt::format(
-      "No method is recommended: {} of the differences between the sensors (mean squares) are in "
-      "their means, and offsets would decide. Give the scene a stretch at rest, a reference, or "
-      "sensors without offsets.",
+      "{} of the differences between the sensors (mean squares) are in their means, and offsets "
+      "would decide. Give the scene a stretch at rest, a reference, or sensors without offsets.",
       percent_text(share, 3));
+}
+
+// Why no score decides, and what does.
+std::vector<std::string> robust_sentences(const ReplayResult& r, bool costs) {
+  const AlgorithmResult& best = r.algorithms[*r.best];
+  std::vector<std::string> out = {
+      fmt::format("Use {}: a sensor that fails or reads otherwise does not lead it astray{}.",
+                  best.label,
+                  costs ? costs_of(best) : "")};
+  if (r.offsets_decide) {
+    out.push_back("Scores do not decide: " + offsets_sentence(r));
+    return out;
+  }
+  std::vector<std::string> unscored;
+  for (const AlgorithmResult& a : r.algorithms)
+    if (a.ran && !a.bound && !std::isfinite(a.rmse)) unscored.push_back(a.label);
+  out.push_back(fmt::format(
+      "Scores do not decide: leave-one-out leaves too few sensors for {}, and one failing sensor "
+      "would decide between the others.",
+      list_of(unscored)));
+  return out;
+}
+
+// Sensors that fail or stand apart, as found.
+std::string doubtful_sensors(const ReplayResult& r) {
+  std::string out;
+  for (const Finding& one : r.warnings.list())
+    if (one.code == "sensor_failing" || one.code == "sensor_apart" || one.code == "frozen_sensor" ||
+        one.code == "constant_sensor" || one.code == "sensor_without_samples")
+      out += (out.empty() ? "" : " ") + fmt::format("Caution: {}.", sentence_of(one));
+  return out;
 }
 
 }  // namespace
@@ -221,14 +251,18 @@ std::string optimum_of(const ReplayResult& r) {
 }
 
 std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
-  if (r.offsets_decide) return {offsets_sentence(r)};
+  if (r.offsets_decide && !r.best)
+    return {"No method is recommended: " + offsets_sentence(r), doubtful_sensors(r)};
   if (!r.best)
     return {
         "No algorithm has a score: without a reference and with these sensors nothing can be "
         "compared."};
   const AlgorithmResult& best = r.algorithms[*r.best];
-  std::vector<std::string> out = {
-      fmt::format("Use {}: {}{}.", best.label, figures(r, best), costs ? costs_of(best) : "")};
+  std::vector<std::string> out =
+      r.chosen_as_robust
+          ? robust_sentences(r, costs)
+          : std::vector{fmt::format(
+                "Use {}: {}{}.", best.label, figures(r, best), costs ? costs_of(best) : "")};
   if (best.availability < 0.9995)
     out[0] += fmt::format(" It has an estimate at {} of the instants.",
                           percent_text(best.availability, 3));
@@ -248,11 +282,12 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   else
     add(single.text);
   add(alone_sentence(r, best));
+  add(doubtful_sensors(r));
   for (const Finding& one : best.remarks.list())
     if (one.severity != Severity::note) add("Caution: " + one.sentence + ".");
   add(without_reference_sentence(r, best, costs));
   add(taught_sentence(r));
-  add(equals_sentence(r, best, costs));
+  if (!r.chosen_as_robust) add(equals_sentence(r, best, costs));
   if (r.has_reference)
     add(bounds_sentence(r));
   else

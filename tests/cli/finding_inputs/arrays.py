@@ -208,6 +208,8 @@ INPUTS = {
                                          sensors="a,b,c,d,e,f")),
     "fault_after_end": asked(replay(options=("--fault", "a:bias=1@100..110",))),
     "sensor_changed": asked(fuse(set_to("b", lambda made: [v + 5 for v in made["b"]]))),
+    "sensor_failing": asked(replay(set_to("b", lambda made: made["b"][:4000] + [v + 5 for v in made["b"][4000:]]))),
+    "sensor_apart": asked(replay(set_to("b", lambda made: [-v for v in made["b"]]), reference="")),
     "noise_changed": asked(fuse(louder("b", 3))),
     "noise_changed_of_all": asked(fuse(louder("abc", 3))),
     "another_rate": asked(fuse(again=at_half_rate)),

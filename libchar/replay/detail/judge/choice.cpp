@@ -19,6 +19,17 @@ bool spans_decades(const AlgorithmResult& a) {
   return std::isfinite(a.rmse_ci95.low) && a.rmse_ci95.high > kDecade * a.rmse_ci95.low;
 }
 
+bool runs_as_often(const AlgorithmResult& a, double most_available) {
+  return a.ran && !a.bound && a.availability >= kLeastAvailable * most_available;
+}
+
+double most_available(const ReplayResult& result) {
+  double most = 0;
+  for (const AlgorithmResult& a : result.algorithms)
+    if (a.ran && !a.bound) most = std::max(most, a.availability);
+  return most;
+}
+
 }  // namespace
 
 bool combines_sensors(const AlgorithmResult& algorithm) {
@@ -34,15 +45,11 @@ bool combines_sensors(const AlgorithmResult& algorithm) {
 std::optional<std::size_t> choose_method(const ReplayResult& result,
                                          const std::vector<double>& costs,
                                          bool fusions) {
-  double most_available = 0;
-  for (const AlgorithmResult& a : result.algorithms)
-    if (a.ran && !a.bound) most_available = std::max(most_available, a.availability);
+  const double most = most_available(result);
   std::vector<std::size_t> all, known;
   for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
     const AlgorithmResult& a = result.algorithms[k];
-    if (!a.ran || a.bound || !std::isfinite(a.rmse) ||
-        a.availability < kLeastAvailable * most_available)
-      continue;
+    if (!std::isfinite(a.rmse) || !runs_as_often(a, most)) continue;
     if (fusions && !combines_sensors(a)) continue;
     all.push_back(k);
     if (!spans_decades(a)) known.push_back(k);
@@ -58,6 +65,19 @@ std::optional<std::size_t> choose_method(const ReplayResult& result,
   };
   for (const std::size_t k : known)
     if (result.algorithms[k].rmse <= limit && (!out || order(k) < order(*out))) out = k;
+  return out;
+}
+
+std::optional<std::size_t> choose_robust(const ReplayResult& result) {
+  const double most = most_available(result);
+  std::optional<std::size_t> out;
+  int highest = 0;
+  for (std::size_t k = 0; k < result.algorithms.size(); ++k) {
+    const AlgorithmResult& a = result.algorithms[k];
+    if (!runs_as_often(a, most) || a.description->withstands <= highest) continue;
+    highest = a.description->withstands;
+    out = k;
+  }
   return out;
 }
 

@@ -24,4 +24,8 @@ std::optional<std::size_t> choose_method(const ReplayResult& result,
                                          const std::vector<double>& costs,
                                          bool fusions = false);
 
+/// Without scores: of the methods that ran, the highest of those that a failing sensor does not lead
+/// astray.
+std::optional<std::size_t> choose_robust(const ReplayResult& result);
+
 }  // namespace libchar

@@ -101,6 +101,19 @@ namespace {
 /// Of a mean square difference from the others, in the means: beyond it nothing else is compared.
 constexpr double kMostOffsets = 0.9;
 
+/// Where leave-one-out does not decide: one failing sensor is in all scores, and what would withstand
+/// it has none (of three sensors two are left); or the scores are those of the offsets.
+std::optional<std::size_t> robust_instead(const ReplayResult& result, const AlgorithmResult& best) {
+  if (result.has_reference || result.inputs.size() != 1 || !best.blind) return std::nullopt;
+  const std::vector<double>& left = best.blind->leave_one_out;
+  const auto scored =
+      std::count_if(left.begin(), left.end(), [](double rms) { return std::isfinite(rms); });
+  const std::optional<std::size_t> robust = choose_robust(result);
+  if (scored < 3 || !robust) return std::nullopt;
+  if (result.offsets_decide || !std::isfinite(result.algorithms[*robust].rmse)) return robust;
+  return std::nullopt;
+}
+
 }  // namespace
 
 void judge_best(ReplayResult& result,
@@ -114,6 +127,13 @@ void judge_best(ReplayResult& result,
   const std::size_t best = *result.best;
   const auto& blind = result.algorithms[best].blind;
   result.offsets_decide = !result.has_reference && blind && blind->offset_share > kMostOffsets;
+  if (const auto robust = robust_instead(result, result.algorithms[best])) {
+    result.chosen_as_robust = true;
+    result.best = robust;
+    result.best_fusion = result.algorithms[*robust].label;
+    for (AlgorithmResult& a : result.algorithms) a.as_good_as_best = a.ran && !a.bound;
+    return;  // no score tells them apart
+  }
   if (result.offsets_decide) {
     result.best_fusion.clear();
     return result.best.reset();

@@ -1,10 +1,12 @@
 #include "libchar/replay/detail/plan/reading_meter.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
@@ -17,10 +19,18 @@ constexpr std::int64_t kLongBlock = 256, kShortBlock = 64, kManyInstants = 5120;
 constexpr std::size_t kMostBlocks = 2048, kLeastBlocks = 8;
 constexpr double kLeastInBlock = 16;  // samples
 constexpr double kUsual = 0.9;        // of the blocks are within what counts as usual
+constexpr double kOfHalf = 2.44;      // the same over the median, of means that are normal
+constexpr double kOfHalfRms = 1.1;    // of rms
 constexpr double kBeyondUsual = 4;    // times the usual mean of a block
 constexpr double kBeyondNoise =
     0.5;                         // of the noise: a smaller change of the mean is not worth a word
 constexpr double kLouder = 2.5;  // times the usual rms of a block
+
+// Of a sensor that stands apart from the others, at least:
+constexpr double kLeastOffset = 3;  // times the noise
+constexpr double kLeastGain = 0.05;
+constexpr double kLeastLouder = 2;     // of the logarithm of the noise
+constexpr double kFalseAlarm = 0.003;  // of each of the three in a sound array
 
 double quantile(std::vector<double> values, double share) {
   const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
@@ -107,8 +117,10 @@ ReadingMeter::Fit ReadingMeter::fit(const Sums& s, double a, double b) {
   return {first + mean, std::sqrt(std::max(0.0, square + 2 * first * mean + first * first))};
 }
 
-std::vector<std::optional<LearntSensor::Reading>> ReadingMeter::result() const {
-  std::vector<std::optional<LearntSensor::Reading>> out(n_);
+ReadingMeter::Readings ReadingMeter::readings(double share,
+                                              double mean_factor,
+                                              double rms_factor) const {
+  Readings out(n_);
   for (std::size_t i = 0; i < n_; ++i) {
     std::vector<std::pair<double, double>> slopes;
     std::vector<double> left, means, scatter;
@@ -130,15 +142,22 @@ std::vector<std::optional<LearntSensor::Reading>> ReadingMeter::result() const {
       means.push_back(std::abs(one.mean));
       scatter.push_back(one.rms);
     }
-    reading.usual_mean = quantile(std::move(means), kUsual);
-    reading.usual_rms = quantile(std::move(scatter), kUsual);
+    reading.usual_mean = mean_factor * quantile(std::move(means), share);
+    reading.usual_rms = rms_factor * quantile(std::move(scatter), share);
     if (std::isfinite(reading.usual_rms) && std::isfinite(reading.gain)) out[i] = reading;
   }
   return out;
 }
 
-std::vector<ReadingMeter::Change> ReadingMeter::changes(
-    const std::vector<std::optional<LearntSensor::Reading>>& learnt) const {
+ReadingMeter::Readings ReadingMeter::result() const {
+  return readings(kUsual, 1, 1);
+}
+
+ReadingMeter::Readings ReadingMeter::steady() const {
+  return readings(0.5, kOfHalf, kOfHalfRms);
+}
+
+std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt) const {
   std::vector<Change> out;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
     if (!learnt[i]) continue;
@@ -170,29 +189,134 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(
   return own_changes(std::move(out), learnt);
 }
 
+namespace {
+
+/// "g1: up to 5 deg/s off, 12 times its scatter, from 4 min to the end"
+std::string change_text(const ReadingMeter::Change& change,
+                        const std::vector<std::string>& names,
+                        const std::vector<std::string>& units,
+                        const Clock& clock) {
+  const auto at = [&](std::int64_t instant) {
+    return duration_text(clock.start_s + static_cast<double>(instant) / clock.rate_hz);
+  };
+  const std::string& unit = units[change.sensor];
+  return fmt::format("{}: up to {}{}{} off, {} times its scatter, from {} to {}",
+                     printable(names[change.sensor], 40),
+                     brief_text(change.offset, 2),
+                     unit.empty() ? "" : " ",
+                     unit,
+                     brief_text(change.scatter, 2),
+                     change.from == 0 ? std::string("the start") : at(change.from),
+                     change.to_end ? std::string("the end") : at(change.to));
+}
+
+/// How far a value is from others that are as scattered as these, over what chance does in an array in 300: by their
+/// deviation (Student's t of one left out), and of many by their median deviation, so that several may stand apart.
+double apart_from(std::vector<double> others, double value) {
+  constexpr std::size_t kMany = 8;
+  constexpr double kOfMedian = 10;
+  const auto n = static_cast<double>(others.size());
+  double mean = 0, squares = 0;
+  for (const double other : others) mean += other / n;
+  for (const double other : others) squares += (other - mean) * (other - mean);
+  const double sd = std::sqrt(squares / (n - 1) * (1 + 1 / n));
+  const double limit = student_quantile(1 - kFalseAlarm / (2 * (n + 1)), n - 1);
+  const double by_sd = (value - mean) / (limit * sd);
+  if (others.size() < kMany) return by_sd;
+  const double middle = median_in_place(others);
+  for (double& other : others) other = std::abs(other - middle);
+  const double by_median = (value - middle) / (kOfMedian * 1.4826 * median_in_place(others));
+  return std::abs(by_median) > std::abs(by_sd) ? by_median : by_sd;
+}
+
+/// Of each value, beyond 1 in magnitude: it stands apart, and by `least` at least; 0: unknown.
+std::vector<double> apart(const std::vector<std::optional<double>>& values, double least) {
+  std::vector<double> out(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::vector<double> others;
+    for (std::size_t j = 0; j < values.size(); ++j)
+      if (j != i && values[j]) others.push_back(*values[j]);
+    if (!values[i] || others.size() < 2) continue;
+    const double away = (*values[i] - median_in_place(others)) / least;
+    const double by_chance = apart_from(std::move(others), *values[i]);
+    out[i] = std::abs(by_chance) < std::abs(away) ? by_chance : away;
+  }
+  return out;
+}
+
+struct ApartSensor {
+  std::string name, unit;
+  double offset = 0, gain = 0, noise = 0;  ///< beyond 1 in magnitude: it stands apart by that
+};
+
+/// What is said of one sensor.
+std::string apart_text(const ApartSensor& sensor, const LearntSensor::Reading& reading) {
+  std::vector<std::string> what;
+  if (std::abs(sensor.gain) > 1)
+    what.push_back(fmt::format("gain {}", brief_text(1 + reading.gain, 3)));
+  if (std::abs(sensor.offset) > 1)
+    what.push_back(fmt::format("offset {}{}{}",
+                               brief_text(reading.offset, 2),
+                               sensor.unit.empty() ? "" : " ",
+                               sensor.unit));
+  if (sensor.noise > 1) what.push_back(fmt::format("noise {}", brief_text(reading.usual_rms, 2)));
+  return fmt::format("{}: {}", printable(sensor.name, 40), fmt::join(what, ", "));
+}
+
+void warn_of_apart(const ReadingMeter::Readings& steady,
+                   const std::vector<std::string>& names,
+                   const std::vector<std::string>& units,
+                   Findings& warnings) {
+  std::vector<std::optional<double>> offset, gain, noise;
+  std::vector<double> rms;
+  for (const auto& one : steady) {
+    offset.push_back(one ? std::optional(one->offset) : std::nullopt);
+    gain.push_back(one ? std::optional(one->gain) : std::nullopt);
+    noise.push_back(one && one->usual_rms > 0 ? std::optional(std::log(one->usual_rms))
+                                              : std::nullopt);
+    if (one) rms.push_back(one->usual_rms);
+  }
+  if (rms.size() < 3) return;
+  const double usual = median_in_place(rms);
+  const std::vector<double> offsets = apart(offset, kLeastOffset * usual),
+                            gains = apart(gain, kLeastGain), levels = apart(noise, kLeastLouder);
+  for (std::size_t i = 0; i < steady.size(); ++i) {
+    const ApartSensor one{names[i], units[i], offsets[i], gains[i], levels[i]};
+    if (std::abs(one.offset) > 1 || std::abs(one.gain) > 1 || one.noise > 1)
+      warnings.add("sensor_apart",
+                   "sensors read otherwise than all others, throughout",
+                   apart_text(one, *steady[i]));
+  }
+}
+
+}  // namespace
+
+void warn_of_readings(const ReadingMeter& meter,
+                      const std::vector<std::string>& names,
+                      const std::vector<std::string>& units,
+                      const Clock& clock,
+                      Findings& warnings) {
+  const ReadingMeter::Readings steady = meter.steady();
+  std::vector<ReadingMeter::Change> changes = meter.changes(steady);
+  // Where most change it is what they see that does: motion, and how the sensors differ in it.
+  if (2 * changes.size() > steady.size()) changes.clear();
+  for (const ReadingMeter::Change& change : changes)
+    warnings.add("sensor_failing",
+                 "sensors read otherwise, relative to the others, than for most of the run",
+                 change_text(change, names, units, clock));
+  warn_of_apart(steady, names, units, warnings);
+}
+
 void warn_of_changes(const std::vector<ReadingMeter::Change>& changes,
                      const std::vector<std::string>& names,
                      const std::vector<std::string>& units,
-                     double rate_hz,
+                     const Clock& clock,
                      Findings& warnings) {
-  for (const ReadingMeter::Change& change : changes) {
-    const auto at = [&](std::int64_t instant) {
-      return duration_text(static_cast<double>(instant) / rate_hz);
-    };
-    const std::string& unit = units[change.sensor];
+  for (const ReadingMeter::Change& change : changes)
     warnings.add("sensor_changed",
                  "sensors read otherwise, relative to the others, than where this was learnt: "
-                 "weights and standard "
-                 "deviations of there do not fit",
-                 fmt::format("{}: up to {}{}{} off, {} times its scatter, from {} to {}",
-                             printable(names[change.sensor], 40),
-                             brief_text(change.offset, 2),
-                             unit.empty() ? "" : " ",
-                             unit,
-                             brief_text(change.scatter, 2),
-                             change.from == 0 ? std::string("the start") : at(change.from),
-                             change.to_end ? std::string("the end") : at(change.to)));
-  }
+                 "weights and standard deviations of there do not fit",
+                 change_text(change, names, units, clock));
 }
 
 }  // namespace libchar::detail

@@ -26,8 +26,12 @@ class ReadingMeter {
   ReadingMeter(Eigen::Index sensors, std::int64_t instants);
   /// A column an instant, a row a sensor; missing samples are left out.
   void push(const Eigen::MatrixXd& samples);
-  /// Of each sensor; none where it has too few samples.
-  std::vector<std::optional<LearntSensor::Reading>> result() const;
+  using Readings = std::vector<std::optional<LearntSensor::Reading>>;
+  /// Of each sensor; none where it has too few samples. What is usual holds for nine blocks of ten.
+  Readings result() const;
+  /// The same, but what is usual is that of the better half of the blocks, so that faults of up to
+  /// half of the log are not in it.
+  Readings steady() const;
 
   /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other.
   struct Change {
@@ -37,8 +41,7 @@ class ReadingMeter {
     std::int64_t from = 0, to = 0;  ///< instants
     bool to_end = false;
   };
-  std::vector<Change> changes(
-      const std::vector<std::optional<LearntSensor::Reading>>& learnt) const;
+  std::vector<Change> changes(const Readings& learnt) const;
 
  private:
   struct Sums {
@@ -50,6 +53,7 @@ class ReadingMeter {
   };
   static Fit fit(const Sums& sums, double a, double b);
   void close();
+  Readings readings(double share, double mean_factor, double rms_factor) const;
 
   std::size_t n_;
   std::int64_t block_, stride_ = 1, seen_ = 0, closed_ = 0;
@@ -58,10 +62,23 @@ class ReadingMeter {
   std::vector<double> sorted_;
 };
 
+/// Of the instants that a meter saw.
+struct Clock {
+  double start_s = 0, rate_hz = 1;
+};
+
+/// Sensors that read otherwise than they do for most of the log they are judged by, or than all
+/// others throughout: offset, gain and noise of one that stand apart from those of the rest.
+void warn_of_readings(const ReadingMeter& meter,
+                      const std::vector<std::string>& names,
+                      const std::vector<std::string>& units,
+                      const Clock& clock,
+                      Findings& warnings);
+
 void warn_of_changes(const std::vector<ReadingMeter::Change>& changes,
                      const std::vector<std::string>& names,
                      const std::vector<std::string>& units,
-                     double rate_hz,
+                     const Clock& clock,
                      Findings& warnings);
 
 }  // namespace libchar::detail
