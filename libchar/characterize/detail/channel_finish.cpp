@@ -343,11 +343,7 @@ void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
     parallel::both([&] { result.lines = find_lines(spectrum, 1e-3, grid); },
                    [&] { result.spectrum = log_binned(spectrum, kPlottedBins); });
     if (options_.spectrum.segment == 0 && !is_whole() && !options_.quarter_segments)
-      result.spectrum.notes.push_back(
-          fmt::format("segments of {} samples: a quarter of a record of more than {} is taken "
-                      "where `segment` asks for N/4",
-                      kStreamedSegment,
-                      kLeafSamples));
+      result.spectrum.notes.push_back(streamed_segment_note());
   });
 }
 
