@@ -101,9 +101,9 @@ void add_points(std::span<const double> means,
 
 }  // namespace
 
-std::vector<std::uint64_t> exact_factors(const AllanOptions& options,
-                                         double dt_s,
-                                         std::uint64_t samples) {
+std::vector<std::uint64_t> detail::exact_factors(const AllanOptions& options,
+                                                 double dt_s,
+                                                 std::uint64_t samples) {
   AllanCurve none;
   none.dt_s = dt_s;
   none.samples = samples;

@@ -9,11 +9,13 @@
 
 namespace libchar {
 
+namespace detail {
 /// Factors between octaves whose terms start every sample: an `allan_deviation` that also takes them
 /// (more_factors) sums the record once for both.
 std::vector<std::uint64_t> exact_factors(const AllanOptions& options,
                                          double dt_s,
                                          std::uint64_t samples);
+}  // namespace detail
 
 /// Adds m = round(10^(i/10)) to a curve of octaves (oadev) of this record, between `tau_min_s` and
 /// `tau_max_s`. From m = 16 on terms start every m/16 to m/8 samples, which costs a hundredth of

@@ -135,7 +135,7 @@ TEST_CASE("ten a decade: a wild first sample counts as in the full overlap") {
 TEST_CASE("ten a decade: points that the octaves' sums give besides are those of their own sums") {
   const auto x = walk_and_noise(50000, 3);
   AllanOptions more;
-  more.more_factors = exact_factors({}, 0.01, x.size());
+  more.more_factors = detail::exact_factors({}, 0.01, x.size());
   CHECK(more.more_factors == std::vector<std::uint64_t>{3, 5, 6, 10, 13});
   AllanCurve both = allan_deviation(x, 0.01, more);
   std::vector<AllanPoint> between;

@@ -178,7 +178,7 @@ AllanCurve Finish::octaves(double rate_hz) {
   octaves.threads = options_.allan.threads;
   if (options_.ten_a_decade && octaves_only(options_.allan, options_.allan.type) &&
       count_missing(kept_) == 0)
-    octaves.more_factors = exact_factors(options_.allan, 1 / rate_hz, kept_.size());
+    octaves.more_factors = detail::exact_factors(options_.allan, 1 / rate_hz, kept_.size());
   AllanCurve curve = allan_deviation(kept_, 1 / rate_hz, octaves);
   std::erase_if(curve.points, [&](const AllanPoint& point) {
     const bool between = !std::has_single_bit(point.m);

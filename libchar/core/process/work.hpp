@@ -16,7 +16,7 @@ enum class WorkKind : std::size_t {
   rows,               ///< of logs, in all passes
   segments,           ///< transformed for spectra
   cosine_transforms,  ///< of records and blocks, for fits
-  floor_medians,      ///< of stretches of a spectrum in which a line may stand
+  floor_medians,      ///< of stretches of a spectrum that may hold a line
   allan_terms,        ///< differences that were averaged
   descents,           ///< of a likelihood or a sum of squares to its least
   simulated_samples,  ///< of sensors
