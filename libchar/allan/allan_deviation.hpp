@@ -53,7 +53,7 @@ struct AllanOptions {
   TauGrid grid = TauGrid::octave;
   /// for TauGrid::list; rounded to multiples of dt, each used once; must be > 0
   std::vector<double> taus_s;
-  std::vector<std::uint64_t> more_factors;  ///< besides those of the grid, as far as they go
+  std::vector<std::uint64_t> more_factors;  ///< next to those of the grid, as far as they go
   double tau_min_s = 0;                     ///< 0 = dt
   /// 0 = T/2, of the Theo family 3/4 T (each type's own limit is applied as well)
   double tau_max_s = 0;
