@@ -61,14 +61,16 @@ std::vector<std::vector<Finding>> findings_of(const std::vector<Channel>& channe
 class SpectraSink : public BlockSink {
  public:
   explicit SpectraSink(const LogSpectraOptions& options)
-      : welch_(welch_options(options)), segment_s_(options.segment_s) {}
+      : welch_(welch_options(options)),
+        segment_s_(options.segment_s),
+        all_(!options.reading.from_s && !options.reading.to_s) {}
   void begin(const LogInfo& so_far) override {
     if (welch_.segment == 0 && segment_s_ > 0)
       welch_.segment = segment_samples(segment_s_, so_far.time.rate_hz);
     meters_.resize(so_far.channels.size());
     kept_.resize(so_far.channels.size());
     arena_.limit_to(threads_beside_reading(so_far, welch_.threads));
-    if (welch_.segment != 0) stream();
+    if (welch_.segment != 0 || (all_ && so_far.samples > kLeafSamples)) stream();
   }
   void block(const SampleBlock& samples) override {
     rows_ += samples.rows;
@@ -103,6 +105,7 @@ class SpectraSink : public BlockSink {
 
   WelchOptions welch_;
   double segment_s_;
+  bool all_;  ///< of the log is read: its length may be known
   std::uint64_t rows_ = 0;
   parallel::Threads arena_;
   WelchWorkspace workspace_;
