@@ -225,7 +225,7 @@ std::vector<PooledPower> whole_powers(std::span<const double> record,
                                       const detail::EndNoise* ends) {
   std::vector<PooledPower> powers;
   if (record.size() >= kSmallestTransform && present_run(record) == record.size()) {
-    powers.push_back(record_power(record, 1, 1, record.size()));
+    powers.push_back(record_power(record, 1, 1, record.size(), ends));
     return powers;
   }
   std::vector<double> segment;
