@@ -152,22 +152,18 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
 void add_spectrum_options(VerbOptions& verb,
                           WelchOptions& spectrum,
                           double& segment_s,
-                          bool* quarter) {
+                          bool& quarter) {
   verb.add_enum("--sides", spectrum.sides, "one- or two-sided spectrum (default: one)");
   verb.add_enum(
       "--scaling", spectrum.scaling, "density U²/Hz, power U², and their roots (default: psd)");
   verb.add_parsed(
       "--segment",
       "N|TIME",
-      [&spectrum, &segment_s, quarter](const std::string& text) {
-        const bool asked = read_segment(text, spectrum, segment_s);
-        if (quarter != nullptr) *quarter = asked;
+      [&spectrum, &segment_s, &quarter](const std::string& text) {
+        quarter = read_segment(text, spectrum, segment_s);
       },
-      quarter == nullptr
-          ? "samples per segment, or a time such as 20s; a log of any length then streams through "
-            "(default: N/4, a quarter of the record)"
-          : "samples per segment, a time such as 20s, or N/4, a quarter of the record (default: "
-            "N/4 up to 1048576 samples, 65536 samples of a longer record)");
+      "samples per segment, a time such as 20s, or N/4, a quarter of the record (default: N/4 up "
+      "to 1048576 samples, 65536 samples of a longer record)");
   verb.add_number(
       "--overlap", spectrum.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
   verb.add_enum("--window", spectrum.window, "window (default: hann)");
@@ -213,7 +209,7 @@ void add_characterize_options(VerbOptions& verb, Session& session, AnalysisOptio
   add_still_option(verb, a);
   add_data_options(verb, a);
   add_allan_options(verb, a);
-  add_spectrum_options(verb, a.options.spectrum, a.options.segment_s, &a.options.quarter_segments);
+  add_spectrum_options(verb, a.options.spectrum, a.options.segment_s, a.options.quarter_segments);
   add_fit_options(verb, a);
 }
 

@@ -30,7 +30,7 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
 void add_spectrum_options(VerbOptions& verb,
                           libchar::WelchOptions& spectrum,
                           double& segment_s,
-                          bool* quarter = nullptr);
+                          bool& quarter);
 /// Samples ("4096"), a time ("20s": `segment_s`, which becomes samples when the rate is known), or
 /// "N/4" (true).
 bool read_segment(const std::string& text, libchar::WelchOptions& spectrum, double& segment_s);

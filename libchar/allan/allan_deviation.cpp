@@ -166,6 +166,8 @@ std::vector<std::uint64_t> averaging_factors(const AllanOptions& options,
       options.grid == TauGrid::list ? listed(options.taus_s, dt_s, reach, notes)
                                     : regular_grid(options.grid, static_cast<std::uint64_t>(reach));
   if (theo) factors = theo->factors(factors);
+  for (const std::uint64_t m : options.more_factors)
+    if (static_cast<double>(m) <= reach) factors.push_back(m);
   std::sort(factors.begin(), factors.end());
   factors.erase(std::unique(factors.begin(), factors.end()), factors.end());
   std::erase_if(factors, [&](std::uint64_t m) {

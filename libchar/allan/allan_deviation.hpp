@@ -53,7 +53,8 @@ struct AllanOptions {
   TauGrid grid = TauGrid::octave;
   /// for TauGrid::list; rounded to multiples of dt, each used once; must be > 0
   std::vector<double> taus_s;
-  double tau_min_s = 0;  ///< 0 = dt
+  std::vector<std::uint64_t> more_factors;  ///< next to those of the grid, as far as they go
+  double tau_min_s = 0;                     ///< 0 = dt
   /// 0 = T/2, of the Theo family 3/4 T (each type's own limit is applied as well)
   double tau_max_s = 0;
   /// 0: every term; d: every (m/d)-th from m = 2 d on, where none of a rate's samples is missing

@@ -5,6 +5,7 @@
 #include "libchar/allan/ten_a_decade.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -100,16 +101,35 @@ void add_points(std::span<const double> means,
 
 }  // namespace
 
+std::vector<std::uint64_t> detail::exact_factors(const AllanOptions& options,
+                                                 double dt_s,
+                                                 std::uint64_t samples) {
+  AllanCurve none;
+  none.dt_s = dt_s;
+  none.samples = samples;
+  const auto factors = wanted_factors(options, none);
+  const auto each = factors.find(1);
+  std::vector<std::uint64_t> out =
+      each == factors.end() ? std::vector<std::uint64_t>() : each->second;
+  std::erase_if(out, [](std::uint64_t m) { return std::has_single_bit(m); });
+  return out;
+}
+
 void add_ten_a_decade(std::span<const double> record,
                       const AllanOptions& options,
                       std::uint64_t exact_samples,
-                      AllanCurve& octaves) {
+                      AllanCurve& octaves,
+                      std::span<const AllanPoint> exact) {
   if (octaves.points.empty() || octaves.type != DeviationType::oadev) return;
   const auto factors = wanted_factors(options, octaves);
   Means halves;  // of r samples, half as many as are wanted
   std::uint64_t r = 1;
   for (const auto& [length, in_means] : factors) {
     if (length < kOfLong && record.size() > exact_samples) continue;
+    if (length == 1 && !exact.empty() && octaves.missing == 0) {
+      octaves.points.insert(octaves.points.end(), exact.begin(), exact.end());
+      continue;
+    }
     if (length == 1) {
       add_points(record, length, in_means, options, octaves);
       continue;

@@ -171,10 +171,10 @@ struct BlockSums {
 
 /// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every
 /// vector width.
-LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x,
-                                     const double* before,
-                                     std::size_t n,
-                                     double shift) {
+LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
+                                      const double* before,
+                                      std::size_t n,
+                                      double shift) {
   Four sum = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
   auto repeats = low != low;  // none yet
@@ -214,12 +214,13 @@ LIBCHAR_WIDE_LANES BlockSums sums_of(const double* x,
           fold(a4),
           (repeats[0] | repeats[1] | repeats[2] | repeats[3]) != 0};
 }
+constexpr InLanes<sums_of_lanes> sums_of;
 
 /// Sum of squares of (x - shift) - offset.
-LIBCHAR_WIDE_LANES double squares_about(const double* x,
-                                        std::size_t n,
-                                        double shift,
-                                        double offset) {
+LIBCHAR_LANES double squares_about_lanes(const double* x,
+                                         std::size_t n,
+                                         double shift,
+                                         double offset) {
   Four sum[2] = {};
   const std::size_t whole = n - n % 8;
   for (std::size_t i = 0; i < whole; i += 8)
@@ -233,9 +234,10 @@ LIBCHAR_WIDE_LANES double squares_about(const double* x,
   }
   return fold(sum[0] + sum[1]);
 }
+constexpr InLanes<squares_about_lanes> squares_about;
 
 // Or beyond what is a measurement.
-LIBCHAR_WIDE_LANES bool any_missing(const double* x, std::size_t n) {
+LIBCHAR_LANES bool any_missing_lanes(const double* x, std::size_t n) {
   Four sum = {};
   auto missing = sum != sum;
   const std::size_t whole = n - n % 4;
@@ -247,6 +249,7 @@ LIBCHAR_WIDE_LANES bool any_missing(const double* x, std::size_t n) {
   for (std::size_t i = whole; i < n; ++i) any |= !(std::fabs(x[i]) <= kLargestSample);
   return any;
 }
+constexpr InLanes<any_missing_lanes> any_missing;
 
 // Mean and variance only: sums about the block's first value, blocks merged by Chan's formula
 // (core/moments.hpp has all four moments at three times the cost, which a meter that runs on every

@@ -98,7 +98,7 @@ constexpr Four kAlternating = {-1, 1, -1, 1};
 #define SWAPPED(v) __builtin_shufflevector(v, v, 1, 0, 3, 2)
 
 /// Four transforms side by side: one turn for four values.
-LIBCHAR_WIDE_LANES void turn_fours(double* values, const double* turns, std::size_t n) {
+LIBCHAR_LANES void turn_fours_lanes(double* values, const double* turns, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j, values += 8) {
     const double cosine = turns[2 * j];
     const Four crossed = turns[2 * j + 1] * kAlternating;
@@ -107,9 +107,10 @@ LIBCHAR_WIDE_LANES void turn_fours(double* values, const double* turns, std::siz
     LIBCHAR_FOUR_TO(values + 4) = v * cosine + SWAPPED(v) * crossed;
   }
 }
+constexpr InLanes<turn_fours_lanes> turn_fours;
 
 /// One transform: a turn for each value; n is even.
-LIBCHAR_WIDE_LANES void turn_each(double* values, const double* turns, std::size_t n) {
+LIBCHAR_LANES void turn_each_lanes(double* values, const double* turns, std::size_t n) {
   for (std::size_t j = 0; j < 2 * n; j += 4) {
     const Four u = LIBCHAR_FOUR(values + j), t = LIBCHAR_FOUR(turns + j);
     const Four cosine = __builtin_shufflevector(t, t, 0, 0, 2, 2);
@@ -117,6 +118,7 @@ LIBCHAR_WIDE_LANES void turn_each(double* values, const double* turns, std::size
     LIBCHAR_FOUR_TO(values + j) = u * cosine + SWAPPED(u) * crossed;
   }
 }
+constexpr InLanes<turn_each_lanes> turn_each;
 
 }  // namespace
 

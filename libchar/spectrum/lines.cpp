@@ -120,11 +120,12 @@ double median_of(const double* values, std::size_t count) {
 }
 
 // Are more than half of kFlank values at least `level`? Then so is their median.
-LIBCHAR_WIDE_LANES bool mostly_at_least(const double* values, double level) {
+LIBCHAR_LANES bool mostly_at_least_lanes(const double* values, double level) {
   auto below = LIBCHAR_FOUR(values) < level;
   for (std::size_t i = 4; i < kFlank; i += 4) below += LIBCHAR_FOUR(values + i) < level;
   return -(below[0] + below[1] + below[2] + below[3]) < static_cast<std::ptrdiff_t>(kFlank / 2);
 }
+constexpr InLanes<mostly_at_least_lanes> mostly_at_least;
 
 struct Floor {
   double level = 0;       // expected power of noise

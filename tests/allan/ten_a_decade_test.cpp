@@ -131,3 +131,26 @@ TEST_CASE("ten a decade: a wild first sample counts as in the full overlap") {
     if (fine.points[i].m < 1000)
       CHECK(fine.points[i].deviation <= exact.points[i].deviation * 1.02);
 }
+
+TEST_CASE("ten a decade: points that the octaves' sums give besides are those of their own sums") {
+  const auto x = walk_and_noise(50000, 3);
+  AllanOptions more;
+  more.more_factors = detail::exact_factors({}, 0.01, x.size());
+  CHECK(more.more_factors == std::vector<std::uint64_t>{3, 5, 6, 10, 13});
+  AllanCurve both = allan_deviation(x, 0.01, more);
+  std::vector<AllanPoint> between;
+  AllanCurve octaves = both;
+  std::erase_if(octaves.points, [&](const AllanPoint& p) {
+    if ((p.m & (p.m - 1)) != 0) between.push_back(p);
+    return (p.m & (p.m - 1)) != 0;
+  });
+  AllanCurve apart = octaves;
+  add_ten_a_decade(x, {}, 1U << 20U, apart);
+  add_ten_a_decade(x, {}, 1U << 20U, octaves, between);
+  REQUIRE(apart.points.size() == octaves.points.size());
+  for (std::size_t i = 0; i < apart.points.size(); ++i) {
+    CHECK(apart.points[i].m == octaves.points[i].m);
+    CHECK(apart.points[i].terms == octaves.points[i].terms);
+    CHECK(apart.points[i].deviation == octaves.points[i].deviation);
+  }
+}

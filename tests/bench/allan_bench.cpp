@@ -16,6 +16,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/allan/confidence.hpp"
 #include "libchar/core/numeric/moments.hpp"
+#include "tests/support/kernels.hpp"
 
 using namespace libchar;
 
@@ -215,5 +216,6 @@ int main(int count, char** arguments) {
   if (exponent > 7.4) speed(10000000);
   errors();
   covariance_cost();
+  test::print_kernels("allan");
   return 0;
 }

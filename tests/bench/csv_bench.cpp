@@ -20,6 +20,7 @@
 #include "libchar/log/csv/rows/rows.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
+#include "tests/support/kernels.hpp"
 
 using namespace libchar;
 
@@ -221,4 +222,5 @@ int main(int count, char** arguments) {
                name,
                seconds / static_cast<double>(x.size()) * 1e9);
   }
+  test::print_kernels("csv");
 }

@@ -32,6 +32,7 @@
 #include "libchar/spectrum/fft.hpp"
 #include "tests/support/flicker.hpp"
 #include "tests/support/kasdin.hpp"
+#include "tests/support/kernels.hpp"
 
 using namespace libchar;
 
@@ -336,5 +337,6 @@ int main(int argc, char** argv) {
     spectrum(number(200));
   } else {
     speed(argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1U << 23U);
+    test::print_kernels("noise");
   }
 }

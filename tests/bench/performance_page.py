@@ -44,9 +44,11 @@ def output(*words):
 
 
 def processor():
-    names = [line.split(":")[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-             if line.startswith("model name")]
-    return names[0] if names else platform.machine()
+    facts = [line.split(":", 1) for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines() if ":" in line]
+    about = {key.strip(): value.strip() for key, value in reversed(facts)}
+    if "model name" not in about:
+        return platform.machine()
+    return f"{about['model name']} (family {about.get('cpu family', '?')}, model {about.get('model', '?')})"
 
 
 def machine(build):

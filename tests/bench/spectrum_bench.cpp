@@ -17,6 +17,7 @@
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
 #include "libchar/spectrum/welch_stream.hpp"
+#include "tests/support/kernels.hpp"
 
 using namespace libchar;
 
@@ -91,4 +92,5 @@ int main(int argc, char** argv) {
   fmt::print("{} samples, one thread unless said, best of 5 (sink {:.3g})\n", n, sink);
   for (const Entry& entry : entries)
     fmt::print("{:>8.2f} ns/sample   {}\n", entry.best / static_cast<double>(n) * 1e9, entry.name);
+  test::print_kernels("spectrum");
 }

@@ -92,3 +92,32 @@ TEST_CASE("log_spectra: a log without a rate, and one too short, are refused in 
   CHECK_THROWS_WITH(log_spectra(path, options),
                     Contains("no channel gives a spectrum: x: ") && !Contains("E0401"));
 }
+
+// As `characterize` does it: one answer, in bounded memory.
+TEST_CASE(
+    "log_spectra: a record of more than a leaf has segments of 2^16 samples, a leaf a quarter") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "log.csv").string();
+  LogSpectraOptions options = at_100_hz();
+  const auto write = [&](std::size_t rows) {
+    std::ofstream out(path);
+    out << "x\n";
+    for (std::size_t i = 0; i < rows; ++i) out << (i * 2654435761U) % 1009 << "\n";
+  };
+  constexpr std::size_t kLeaf = std::size_t{1} << 20U;
+  write(kLeaf);
+  CHECK(log_spectra(path, options).channels[0].spectrum.segment == kLeaf / 4);
+  write(kLeaf + 1);
+  const LogSpectra streamed = log_spectra(path, options);
+  CHECK(streamed.channels[0].spectrum.segment == 65536);
+  CHECK_THAT(streamed.notes.at(0), Contains("N/4"));
+  const Recording recording = read_recording(path, options.reading);
+  CHECK(log_spectra(view_of(recording), options).channels[0].spectrum.value ==
+        streamed.channels[0].spectrum.value);
+  options.quarter_segments = true;
+  CHECK(log_spectra(path, options).channels[0].spectrum.segment == (kLeaf + 1) / 4);
+  options.quarter_segments = false;
+  options.spectrum.segment = 65536;
+  CHECK(log_spectra(path, options).channels[0].spectrum.value ==
+        streamed.channels[0].spectrum.value);
+}

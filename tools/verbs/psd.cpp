@@ -134,7 +134,8 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
   options.add_flag("--lines",
                    verb->options.lines,
                    "list the spectral lines (with --json: in addition to the spectra)");
-  add_spectrum_options(options, verb->options.spectrum, verb->options.segment_s);
+  add_spectrum_options(
+      options, verb->options.spectrum, verb->options.segment_s, verb->options.quarter_segments);
   options.add_enum("--average",
                    verb->options.average,
                    "mean of the segments, or their median without its bias: bursts do not count "

@@ -29,7 +29,7 @@ struct DifferenceRun {
   std::size_t stride = 1;
 };
 
-/// Inlined into each target clone, so that it is compiled for that target.
+/// Inlined into each kernel, so that it is compiled for the instructions of that.
 template <int kOrder>
 [[gnu::always_inline]] inline double squared(const DifferenceRun& run, std::size_t t) {
   const double u = static_cast<double>(static_cast<std::int64_t>(t));
@@ -71,13 +71,15 @@ template <int kOrder>
   return sum_of_lanes(lane);
 }
 
-LIBCHAR_WIDE_LANES double squared_second_differences(const DifferenceRun& run) {
+LIBCHAR_LANES double squared_second_differences_lanes(const DifferenceRun& run) {
   return any_stride<2>(run);
 }
+constexpr InLanes<squared_second_differences_lanes> squared_second_differences;
 
-LIBCHAR_WIDE_LANES double squared_third_differences(const DifferenceRun& run) {
+LIBCHAR_LANES double squared_third_differences_lanes(const DifferenceRun& run) {
   return any_stride<3>(run);
 }
+constexpr InLanes<squared_third_differences_lanes> squared_third_differences;
 
 constexpr std::size_t kBlock = AnchoredPhase::kBlock;
 
@@ -161,7 +163,7 @@ Polynomial polynomial(const AnchoredPhase& phase, std::size_t position, bool of_
 }
 
 /// Largest |x/2 - first| of what is finite; n is a multiple of four.
-LIBCHAR_WIDE_LANES double largest_deviation(const double* x, std::size_t n, double first) {
+LIBCHAR_LANES double largest_deviation_lanes(const double* x, std::size_t n, double first) {
   const Four infinite = Four{} + std::numeric_limits<double>::infinity();
   Four largest = {};
   for (std::size_t i = 0; i < n; i += 4) {
@@ -171,6 +173,7 @@ LIBCHAR_WIDE_LANES double largest_deviation(const double* x, std::size_t n, doub
   }
   return std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3]));
 }
+constexpr InLanes<largest_deviation_lanes> largest_deviation;
 
 constexpr double kWeights[2][4] = {{1, -2, 1, 0}, {-1, 3, -3, 1}};
 

@@ -34,12 +34,12 @@ struct WindowSums {
 };
 
 /// sum_{j<count} (a_j + b_j - 3 c_j + weight d_j)^2, in eight lanes.
-LIBCHAR_WIDE_LANES double reflected_squares(const double* a,
-                                            const double* b,
-                                            const double* c,
-                                            const double* d,
-                                            double weight,
-                                            std::size_t count) {
+LIBCHAR_LANES double reflected_squares_lanes(const double* a,
+                                             const double* b,
+                                             const double* c,
+                                             const double* d,
+                                             double weight,
+                                             std::size_t count) {
   Four sum[2] = {};
   const std::size_t whole = count / 8 * 8;
   for (std::size_t j = 0; j < whole; j += 8)
@@ -57,6 +57,7 @@ LIBCHAR_WIDE_LANES double reflected_squares(const double* a,
   }
   return sum_of_lanes(lane);
 }
+constexpr InLanes<reflected_squares_lanes> reflected_squares;
 
 /// `sum`: running sums of the series; the window begins at i.
 void window_sums(const std::vector<double>& sum, std::size_t i, std::size_t m, WindowSums& out) {

@@ -30,7 +30,7 @@ constexpr std::size_t kSmallest = 10, kBlockOfTheo = 256, kFewRatios = 64;
 constexpr double kRatioWork = 1 << 30;
 
 /// sum_d w_d (ends - (left_d + right_d))^2, d = 0 … count - 1, in eight lanes.
-LIBCHAR_WIDE_LANES double weighted_squares(
+LIBCHAR_LANES double weighted_squares_lanes(
     const double* left, const double* right, const double* w, std::size_t count, double ends) {
   Four sum[2] = {};
   const std::size_t whole = count / 8 * 8;
@@ -48,6 +48,7 @@ LIBCHAR_WIDE_LANES double weighted_squares(
   }
   return sum_of_lanes(lane);
 }
+constexpr InLanes<weighted_squares_lanes> weighted_squares;
 
 FamilySum theo_sum(const FamilyInput& input,
                    const IndexRange& stretch,

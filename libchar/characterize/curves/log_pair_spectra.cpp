@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "libchar/characterize/detail/leaf.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/log/quality.hpp"
 
@@ -36,8 +37,12 @@ LogCrossSpectrum log_cross_spectrum(const std::string& path,
   LogCrossSpectrum out;
   out.first = recording.info.channels[x];
   out.second = recording.info.channels[y];
-  out.cross = cross_spectrum(
-      recording.channel(x), recording.channel(y), rate_hz, segments_of(options, rate_hz));
+  WelchOptions welch = segments_of(options, rate_hz);
+  const bool in_leaves =
+      welch.segment == 0 && !options.quarter_segments && recording.channel(x).size() > kLeafSamples;
+  if (in_leaves) welch = streamed_spectrum(welch);
+  out.cross = cross_spectrum(recording.channel(x), recording.channel(y), rate_hz, welch);
+  if (in_leaves) out.cross.notes.insert(out.cross.notes.begin(), streamed_segment_note());
   out.log = std::move(recording.info);
   return out;
 }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "libchar/characterize/detail/leaf.hpp"
 #include "libchar/characterize/detail/longest_segment.hpp"
 #include "libchar/core/numeric/whole.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
@@ -55,23 +57,37 @@ std::vector<std::vector<Finding>> findings_of(const std::vector<Channel>& channe
   return findings;
 }
 
-// One segment a channel in memory, however long the log is.
+/// Samples are kept only as long as they may be all of a record whose segments are a quarter of it.
 class SpectraSink : public BlockSink {
  public:
   explicit SpectraSink(const LogSpectraOptions& options)
-      : welch_(welch_options(options)), segment_s_(options.segment_s) {}
+      : welch_(welch_options(options)),
+        segment_s_(options.segment_s),
+        all_(!options.reading.from_s && !options.reading.to_s) {}
   void begin(const LogInfo& so_far) override {
-    if (welch_.segment == 0) welch_.segment = segment_samples(segment_s_, so_far.time.rate_hz);
-    for (std::size_t c = 0; c < so_far.channels.size(); ++c)
-      streams_.emplace_back(welch_, &workspace_);
-    meters_.resize(streams_.size());
+    if (welch_.segment == 0 && segment_s_ > 0)
+      welch_.segment = segment_samples(segment_s_, so_far.time.rate_hz);
+    meters_.resize(so_far.channels.size());
+    kept_.resize(so_far.channels.size());
+    arena_.limit_to(threads_beside_reading(so_far, welch_.threads));
+    if (welch_.segment != 0 || (all_ && so_far.samples > kLeafSamples)) stream();
   }
   void block(const SampleBlock& samples) override {
-    for (std::size_t c = 0; c < streams_.size(); ++c) {
-      streams_[c].push({samples.channels[c], samples.rows});
-      meters_[c].push({samples.channels[c], samples.rows});
-    }
+    rows_ += samples.rows;
+    arena_.run([&] {
+      parallel::for_each(0, meters_.size(), [&](std::size_t c) {
+        const std::span<const double> more{samples.channels[c], samples.rows};
+        meters_[c].push(more);
+        if (is_whole())
+          kept_[c].insert(kept_[c].end(), more.begin(), more.end());
+        else
+          streams_[c].push(more);
+      });
+    });
+    if (is_whole() && rows_ > kLeafSamples) stream();
   }
+  bool is_whole() const { return streams_.empty(); }
+  std::vector<std::vector<double>> kept() { return std::move(kept_); }
   const std::vector<WelchStream>& streams() const { return streams_; }
   std::vector<ChannelQuality> qualities() const {
     std::vector<ChannelQuality> out;
@@ -80,35 +96,23 @@ class SpectraSink : public BlockSink {
   }
 
  private:
+  void stream() {
+    for (std::vector<double>& samples : kept_) {
+      streams_.emplace_back(streamed_spectrum(welch_), &workspace_).push(samples);
+      samples = std::vector<double>();  // `{}` would keep the memory
+    }
+  }
+
   WelchOptions welch_;
   double segment_s_;
+  bool all_;  ///< of the log is read: its length may be known
+  std::uint64_t rows_ = 0;
+  parallel::Threads arena_;
   WelchWorkspace workspace_;
+  std::vector<std::vector<double>> kept_;
   std::vector<WelchStream> streams_;
   std::vector<QualityMeter> meters_;
 };
-
-LogSpectra streamed(const std::string& path, const LogSpectraOptions& options, Progress& progress) {
-  SpectraSink sink(options);
-  LogSpectra result;
-  result.log = read_log(path, options.reading, sink, progress);
-  known_rate_hz(result.log);
-  const auto findings = findings_of(result.log.channels, sink.qualities());
-  for (std::size_t c = 0; c < sink.streams().size(); ++c)
-    try_channel(result, result.log.channels[c], findings[c], [&] {
-      return sink.streams()[c].finish(result.log.time.rate_hz);
-    });
-  return result;
-}
-
-std::vector<std::vector<Finding>> findings_in(const RecordingView& recording) {
-  std::vector<ChannelQuality> qualities;
-  for (const auto& samples : recording.samples) {
-    QualityMeter meter;
-    meter.push(samples);
-    qualities.push_back(meter.finish());
-  }
-  return findings_of(recording.info.channels, std::move(qualities));
-}
 
 LogSpectra spectra_of(const RecordingView& recording,
                       const std::vector<std::vector<Finding>>& findings,
@@ -127,15 +131,21 @@ LogSpectra spectra_of(const RecordingView& recording,
   return result;
 }
 
-// Segments of a quarter of the record: the record has to be there first. Where one channel needs
-// shorter segments than another, all get the shortest, so that they share one frequency axis.
-LogSpectra whole(const RecordingView& recording, const LogSpectraOptions& options) {
+// Where one channel needs shorter segments than another, all get the shortest, so that they share
+// one frequency axis.
+LogSpectra whole(const RecordingView& recording,
+                 const std::vector<std::vector<Finding>>& findings,
+                 const LogSpectraOptions& options) {
   known_rate_hz(recording.info);
   WelchOptions welch = welch_options(options);
   if (welch.segment == 0 && options.segment_s > 0)
     welch.segment = segment_samples(options.segment_s, recording.info.time.rate_hz);
-  const auto findings = findings_in(recording);
+  const bool in_leaves = welch.segment == 0 && !options.quarter_segments &&
+                         !recording.samples.empty() &&
+                         recording.samples.front().size() > kLeafSamples;
+  if (in_leaves) welch = streamed_spectrum(welch);
   LogSpectra result = spectra_of(recording, findings, welch, options.average);
+  if (in_leaves) result.notes.insert(result.notes.begin(), streamed_segment_note());
   const auto [shortest, longest] = std::minmax_element(
       result.channels.begin(), result.channels.end(), [](const auto& a, const auto& b) {
         return a.spectrum.segment < b.spectrum.segment;
@@ -147,6 +157,34 @@ LogSpectra whole(const RecordingView& recording, const LogSpectraOptions& option
       "all channels: segments of {} samples, the shortest that one of them needs", welch.segment));
   result = spectra_of(recording, findings, welch, options.average);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  return result;
+}
+
+LogSpectra whole(const RecordingView& recording, const LogSpectraOptions& options) {
+  std::vector<ChannelQuality> qualities;
+  for (const auto& samples : recording.samples) {
+    QualityMeter meter;
+    meter.push(samples);
+    qualities.push_back(meter.finish());
+  }
+  return whole(recording, findings_of(recording.info.channels, std::move(qualities)), options);
+}
+
+LogSpectra streamed(const std::string& path, const LogSpectraOptions& options, Progress& progress) {
+  SpectraSink sink(options);
+  LogSpectra result;
+  result.log = read_log(path, options.reading, sink, progress);
+  known_rate_hz(result.log);
+  const auto findings = findings_of(result.log.channels, sink.qualities());
+  if (sink.is_whole()) {
+    const Recording recording{std::move(result.log), sink.kept()};
+    return whole(view_of(recording), findings, options);
+  }
+  if (!segment_given(options)) result.notes.push_back(streamed_segment_note());
+  for (std::size_t c = 0; c < sink.streams().size(); ++c)
+    try_channel(result, result.log.channels[c], findings[c], [&] {
+      return sink.streams()[c].finish(result.log.time.rate_hz);
+    });
   return result;
 }
 
@@ -170,7 +208,7 @@ LogSpectra log_spectra(const std::string& path,
                        Progress& progress) {
   refuse_longer_segment(
       path, options.reading, options.spectrum.segment, options.segment_s, progress);
-  if (segment_given(options) && options.average == SegmentAverage::mean)
+  if (!options.quarter_segments && options.average == SegmentAverage::mean)
     return finished(streamed(path, options, progress), options);
   const Recording recording = read_recording(path, options.reading, progress);
   return finished(whole(view_of(recording), options), options);

@@ -14,9 +14,12 @@
 namespace libchar {
 
 struct LogSpectraOptions {
-  ReadOptions reading;    ///< its `threads` serve the spectra too
-  WelchOptions spectrum;  ///< a segment of 0: a quarter of the record
-  double segment_s = 0;   ///< length of a segment instead of `spectrum.segment`; 0: as that says
+  ReadOptions reading;  ///< its `threads` serve the spectra too
+  /// a segment of 0: a quarter of a record of at most a leaf (2^20 samples), 2^16 samples of a
+  /// longer one, as `characterize` does
+  WelchOptions spectrum;
+  double segment_s = 0;  ///< length of a segment instead of `spectrum.segment`; 0: as that says
+  bool quarter_segments = false;  ///< a quarter of a longer record too: the samples are kept
   SegmentAverage average = SegmentAverage::mean;  ///< median: the samples are kept
   bool lines = false;                             ///< find the spectral lines
   std::uint64_t bins =
@@ -36,8 +39,9 @@ struct LogSpectra {
   std::vector<std::string> notes;  ///< "gyro_x: …": of single channels, and why one is missing
 };
 
-/// Reads the log once: with a segment given as it streams, in the memory of one segment per channel; else whole. Throws as read_log and
-/// welch, Error(numeric) where the sampling rate is not known or no channel gives a spectrum.
+/// Reads the log once, as it streams, in the memory of a leaf per channel at most; whole where the
+/// median or a quarter of a long record is asked for. Throws as read_log and welch, Error(numeric)
+/// where the sampling rate is not known or no channel gives a spectrum.
 LogSpectra log_spectra(const std::string& path,
                        const LogSpectraOptions& options = {},
                        Progress& progress = no_progress());

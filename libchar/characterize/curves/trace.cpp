@@ -7,11 +7,16 @@
 
 namespace libchar {
 
+namespace {
+
+struct Extremes {
+  double low, high;
+  std::uint64_t missing;
+};
+
 // Comparisons with NaN are false: missing samples change no extreme. A comparison that holds is minus one.
-LIBCHAR_WIDE_LANES void TraceMeter::Block::take(std::span<const double> taken) {
-  const double* const samples = taken.data();
-  const std::size_t count = taken.size();
-  Four lows = Four{} + low, highs = Four{} + high;
+LIBCHAR_LANES void widen_lanes(const double* samples, std::size_t count, Extremes& seen) {
+  Four lows = Four{} + seen.low, highs = Four{} + seen.high;
   auto absent = lows != lows;
   const std::size_t whole = count - count % 4;
   for (std::size_t i = 0; i < whole; i += 4) {
@@ -21,15 +26,26 @@ LIBCHAR_WIDE_LANES void TraceMeter::Block::take(std::span<const double> taken) {
     absent += x != x;
   }
   for (int lane = 0; lane < 4; ++lane) {
-    low = std::min(low, lows[lane]);
-    high = std::max(high, highs[lane]);
-    missing -= static_cast<std::uint64_t>(absent[lane]);
+    seen.low = std::min(seen.low, lows[lane]);
+    seen.high = std::max(seen.high, highs[lane]);
+    seen.missing -= static_cast<std::uint64_t>(absent[lane]);
   }
   for (std::size_t i = whole; i < count; ++i) {
-    low = samples[i] < low ? samples[i] : low;
-    high = samples[i] > high ? samples[i] : high;
-    missing += samples[i] != samples[i] ? 1 : 0;
+    seen.low = samples[i] < seen.low ? samples[i] : seen.low;
+    seen.high = samples[i] > seen.high ? samples[i] : seen.high;
+    seen.missing += samples[i] != samples[i] ? 1 : 0;
   }
+}
+constexpr InLanes<widen_lanes> widen;
+
+}  // namespace
+
+void TraceMeter::Block::take(std::span<const double> samples) {
+  Extremes seen{low, high, missing};
+  widen(samples.data(), samples.size(), seen);
+  low = seen.low;
+  high = seen.high;
+  missing = seen.missing;
 }
 
 void TraceMeter::Block::join(const Block& later) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
 
 #include "libchar/allan/allan_pyramid.hpp"
@@ -88,7 +89,7 @@ class Finish {
   std::vector<NoiseType> noise_types(double rate_hz) const;
   // what is made of it
   void finish(ChannelResult& result, double rate_hz);
-  AllanCurve octaves(double rate_hz) const;
+  AllanCurve octaves(double rate_hz);
   AllanCurve wanted_curve(const AllanCurve& octaves, DeviationType type, double rate_hz) const;
   void add_curves(const AllanCurve& octaves, double rate_hz, ChannelResult& result) const;
   void curve_and_fit(ChannelResult& curve, ChannelResult& result, double rate_hz);
@@ -110,6 +111,7 @@ class Finish {
   std::vector<double> kept_;  ///< as a rate: all samples, or none
   DespikedRecord despiked_;   ///< rate of the phase without its spikes, when it has some
   std::vector<NoiseType> noise_types_;
+  std::vector<AllanPoint> between_;    ///< octaves, for the plot: of the same sums
   std::optional<EventSeries> series_;  ///< where the search for motion has made it
 };
 
@@ -170,11 +172,20 @@ Quantization Finish::quantization() const {
 }
 
 // The curve that the fit checks itself with, whatever is plotted.
-AllanCurve Finish::octaves(double rate_hz) const {
+AllanCurve Finish::octaves(double rate_hz) {
   if (!is_whole()) return octave_curve(read_.sums.record.plain.allan, 1 / rate_hz);
   AllanOptions octaves;
   octaves.threads = options_.allan.threads;
-  return allan_deviation(kept_, 1 / rate_hz, octaves);
+  if (options_.ten_a_decade && octaves_only(options_.allan, options_.allan.type) &&
+      count_missing(kept_) == 0)
+    octaves.more_factors = detail::exact_factors(options_.allan, 1 / rate_hz, kept_.size());
+  AllanCurve curve = allan_deviation(kept_, 1 / rate_hz, octaves);
+  std::erase_if(curve.points, [&](const AllanPoint& point) {
+    const bool between = !std::has_single_bit(point.m);
+    if (between) between_.push_back(point);
+    return between;
+  });
+  return curve;
 }
 
 AllanCurve Finish::wanted_curve(const AllanCurve& octaves,
@@ -183,7 +194,7 @@ AllanCurve Finish::wanted_curve(const AllanCurve& octaves,
   if (octaves_only(options_.allan, type) && (is_whole() || !options_.full_overlap)) {
     AllanCurve curve = limited(octaves, options_.allan);
     if (options_.ten_a_decade && is_whole())
-      add_ten_a_decade(kept_, options_.allan, kLeafSamples, curve);
+      add_ten_a_decade(kept_, options_.allan, kLeafSamples, curve, between_);
     return curve;
   }
   AllanOptions allan = options_.allan;
@@ -343,11 +354,7 @@ void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
     parallel::both([&] { result.lines = find_lines(spectrum, 1e-3, grid); },
                    [&] { result.spectrum = log_binned(spectrum, kPlottedBins); });
     if (options_.spectrum.segment == 0 && !is_whole() && !options_.quarter_segments)
-      result.spectrum.notes.push_back(
-          fmt::format("segments of {} samples: a quarter of a record of more than {} is taken "
-                      "where `segment` asks for N/4",
-                      kStreamedSegment,
-                      kLeafSamples));
+      result.spectrum.notes.push_back(streamed_segment_note());
   });
 }
 

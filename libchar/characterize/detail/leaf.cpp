@@ -1,5 +1,7 @@
 #include "libchar/characterize/detail/leaf.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -80,6 +82,14 @@ void SampleMeters::push(std::span<const double> samples) {
 WelchOptions streamed_spectrum(WelchOptions options) {
   if (options.segment == 0) options.segment = kStreamedSegment;
   return options;
+}
+
+std::string streamed_segment_note() {
+  return fmt::format(
+      "segments of {} samples: a quarter of a record of more than {} is taken where `segment` asks "
+      "for N/4",
+      kStreamedSegment,
+      kLeafSamples);
 }
 
 std::string why_not_in_leaves(const CharacterizeOptions& options) {

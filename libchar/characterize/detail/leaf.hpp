@@ -45,6 +45,7 @@ ValueCensus census_of(const ChannelQuality& quality);
 /// Of a record of more than one leaf, unless another segment is asked for.
 inline constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 WelchOptions streamed_spectrum(WelchOptions options);
+std::string streamed_segment_note();
 /// "" or why the spectrum is not one of leaves: its samples must come one leaf after the other.
 std::string why_not_in_leaves(const CharacterizeOptions& options);
 

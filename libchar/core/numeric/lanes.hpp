@@ -12,16 +12,43 @@ using FourInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = d
 static_assert(alignof(FourInMemory) == 8);
 
 /// Four doubles from or to any address. A macro, because a function that returns a vector changes
-/// its ABI with the target clone.
+/// its ABI with the instructions.
 #define LIBCHAR_FOUR(pointer) (*reinterpret_cast<const ::libchar::FourInMemory*>(pointer))
 #define LIBCHAR_FOUR_TO(pointer) (*reinterpret_cast<::libchar::FourInMemory*>(pointer))
 
-/// A function that is compiled twice, with and without AVX2; the loader picks one at start. Clang 14
-/// knows no clones, and the address sanitizer is not ready when the loader asks.
-#if defined(LIBCHAR_X86_64) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define LIBCHAR_WIDE_LANES __attribute__((target_clones("avx2", "default")))
-#else
-#define LIBCHAR_WIDE_LANES
-#endif
+/// A kernel: inlined into a function for each kind of instructions; `InLanes` calls the one that this
+/// processor runs. A kernel is neither a member nor a template, and calls nothing that stays a call.
+#define LIBCHAR_LANES [[gnu::always_inline]] static inline
 
 }  // namespace libchar
+
+namespace libchar::detail {
+
+template <auto kKernel>
+struct InLanes;
+
+template <class Result, class... Arguments, Result (*kKernel)(Arguments...)>
+struct InLanes<kKernel> {
+  Result operator()(Arguments... arguments) const {
+#if defined(LIBCHAR_X86_64)
+    if (instructions() >= Instructions::avx2) return with_avx2(arguments...);
+#endif
+    return with_any(arguments...);
+  }
+
+ private:
+  [[gnu::noinline]] static Result with_any(Arguments... arguments) {
+    return kKernel(arguments...);
+  }
+#if defined(LIBCHAR_X86_64)
+  __attribute__((LIBCHAR_AVX2, noinline)) static Result with_avx2(Arguments... arguments) {
+    return kKernel(arguments...);
+  }
+#endif
+};
+
+}  // namespace libchar::detail
+
+namespace libchar {
+using namespace detail;
+}

@@ -16,7 +16,7 @@ double fold(const double (&lane)[kLanes]) {
   return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
 }
 
-LIBCHAR_WIDE_LANES double shifted_sum(const double* x, int n, double shift) {
+LIBCHAR_LANES double shifted_sum_lanes(const double* x, int n, double shift) {
   Four sum[2] = {};
   const int whole = n - n % kLanes;
   for (int i = 0; i < whole; i += kLanes)
@@ -29,9 +29,10 @@ LIBCHAR_WIDE_LANES double shifted_sum(const double* x, int n, double shift) {
   for (int i = whole; i < n; ++i) lane[i % kLanes] += x[i] - shift;
   return fold(lane);
 }
+constexpr InLanes<shifted_sum_lanes> shifted_sum;
 
 /// Sums of the first four powers of (x - shift) - offset.
-LIBCHAR_WIDE_LANES void power_sums(
+LIBCHAR_LANES void power_sums_lanes(
     const double* x, int n, double shift, double offset, double out[4]) {
   Four sum[4][2] = {};
   const int whole = n - n % kLanes;
@@ -55,9 +56,10 @@ LIBCHAR_WIDE_LANES void power_sums(
   }
   for (int k = 0; k < 4; ++k) out[k] = fold(lane[k]);
 }
+constexpr InLanes<power_sums_lanes> power_sums;
 
 /// Extremes of n values (a multiple of eight); false when one of them is NaN.
-LIBCHAR_WIDE_LANES bool extremes(const double* x, int n, double& minimum, double& maximum) {
+LIBCHAR_LANES bool extremes_lanes(const double* x, int n, double& minimum, double& maximum) {
   Four low[2] = {{minimum, minimum, minimum, minimum}, {minimum, minimum, minimum, minimum}};
   Four high[2] = {{maximum, maximum, maximum, maximum}, {maximum, maximum, maximum, maximum}};
   Four seen[2] = {};
@@ -78,6 +80,7 @@ LIBCHAR_WIDE_LANES bool extremes(const double* x, int n, double& minimum, double
     }
   return true;
 }
+constexpr InLanes<extremes_lanes> extremes;
 
 /// 0 where the fourth powers of values up to `range` are numbers.
 int unit_exponent(double range) {

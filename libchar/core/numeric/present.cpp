@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kPiece = 64;  // looked at together
 
 // x != x for a missing sample only; x - x is no number for an infinity either.
-LIBCHAR_WIDE_LANES std::size_t whole_present_pieces(const double* x, std::size_t n) {
+LIBCHAR_LANES std::size_t whole_present_pieces_lanes(const double* x, std::size_t n) {
   std::size_t i = 0;
   for (; i + kPiece <= n; i += kPiece) {
     Four sum = {};
@@ -25,8 +25,9 @@ LIBCHAR_WIDE_LANES std::size_t whole_present_pieces(const double* x, std::size_t
   }
   return i;
 }
+constexpr InLanes<whole_present_pieces_lanes> whole_present_pieces;
 
-LIBCHAR_WIDE_LANES std::size_t whole_finite_pieces(const double* x, std::size_t n) {
+LIBCHAR_LANES std::size_t whole_finite_pieces_lanes(const double* x, std::size_t n) {
   std::size_t i = 0;
   for (; i + kPiece <= n; i += kPiece) {
     Four sum = {};
@@ -38,8 +39,9 @@ LIBCHAR_WIDE_LANES std::size_t whole_finite_pieces(const double* x, std::size_t 
   }
   return i;
 }
+constexpr InLanes<whole_finite_pieces_lanes> whole_finite_pieces;
 
-LIBCHAR_WIDE_LANES std::size_t missing_in(const double* x, std::size_t n) {
+LIBCHAR_LANES std::size_t missing_in_lanes(const double* x, std::size_t n) {
   Four none = {};
   auto count = none != none;  // minus one for every missing sample of the lane
   std::size_t i = 0;
@@ -51,8 +53,9 @@ LIBCHAR_WIDE_LANES std::size_t missing_in(const double* x, std::size_t n) {
   for (; i < n; ++i) missing += x[i] != x[i];
   return missing;
 }
+constexpr InLanes<missing_in_lanes> missing_in;
 
-LIBCHAR_WIDE_LANES std::size_t beyond_in(const double* x, std::size_t n) {
+LIBCHAR_LANES std::size_t beyond_in_lanes(const double* x, std::size_t n) {
   Four none = {};
   auto count = none != none;
   std::size_t i = 0;
@@ -64,8 +67,9 @@ LIBCHAR_WIDE_LANES std::size_t beyond_in(const double* x, std::size_t n) {
   for (; i < n; ++i) beyond += std::abs(x[i]) > kLargestSample;
   return beyond;
 }
+constexpr InLanes<beyond_in_lanes> beyond_in;
 
-LIBCHAR_WIDE_LANES double sum_of_fours(const double* x, std::size_t fours, double origin) {
+LIBCHAR_LANES double sum_of_fours_lanes(const double* x, std::size_t fours, double origin) {
   Four sum = {}, other = {};
   std::size_t i = 0;
   for (; i + 2 <= fours; i += 2) {
@@ -76,6 +80,7 @@ LIBCHAR_WIDE_LANES double sum_of_fours(const double* x, std::size_t fours, doubl
   sum += other;
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
+constexpr InLanes<sum_of_fours_lanes> sum_of_fours;
 
 double sum_about(std::span<const double> samples, double origin) {
   const std::size_t fours = samples.size() / 4;

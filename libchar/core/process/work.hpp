@@ -16,6 +16,7 @@ enum class WorkKind : std::size_t {
   rows,               ///< of logs, in all passes
   segments,           ///< transformed for spectra
   cosine_transforms,  ///< of records and blocks, for fits
+  floor_medians,      ///< of stretches of a spectrum that may hold a line
   allan_terms,        ///< differences that were averaged
   descents,           ///< of a likelihood or a sum of squares to its least
   simulated_samples,  ///< of sensors
@@ -27,8 +28,8 @@ enum class WorkKind : std::size_t {
 template <>
 inline constexpr auto enum_table<WorkKind> =
     enum_words<WorkKind,
-               "passes rows segments cosine_transforms allan_terms descents simulated_samples "
-               "learnt_instants training_steps fused_instants blind_instants">;
+               "passes rows segments cosine_transforms floor_medians allan_terms descents "
+               "simulated_samples learnt_instants training_steps fused_instants blind_instants">;
 
 using WorkDone = std::array<std::uint64_t, enum_table<WorkKind>.size()>;
 

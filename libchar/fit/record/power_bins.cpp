@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/process/work.hpp"
 #include "libchar/fit/detail/record/record_powers.hpp"
 
 namespace libchar {
@@ -28,23 +30,41 @@ struct LineClip {
 constexpr std::uint64_t kLowest = 32;
 constexpr double kFalseAlarm = 1.54e-8;  // P(chi^2_1 > 32)
 
+LIBCHAR_LANES double largest_lanes(const double* x, std::size_t n) {
+  const std::size_t whole = n - n % 4;
+  Four top = {};
+  for (std::size_t i = 0; i < whole; i += 4) {
+    const Four v = LIBCHAR_FOUR(x + i);
+    top = v > top ? v : top;
+  }
+  double out = std::max(std::max(top[0], top[1]), std::max(top[2], top[3]));
+  for (std::size_t i = whole; i < n; ++i) out = std::max(out, x[i]);
+  return out;
+}
+constexpr InLanes<largest_lanes> largest;
+
+LIBCHAR_LANES std::int64_t count_below_lanes(const double* x, std::size_t n, double level) {
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) count += x[i] < level ? 1 : 0;
+  return count;
+}
+constexpr InLanes<count_below_lanes> count_below;
+
 /// Floor of the coefficients: medians over stretches of an eighth of k, 64 to 2048 coefficients
 /// long, joined by straight lines in log-log, so that the slope of flicker and walk within a
-/// stretch is not taken for a line.
+/// stretch is not taken for a line. A median is looked for where it is asked for: of most stretches
+/// the count of coefficients below a level says enough.
 class LocalFloor {
  public:
-  LocalFloor(const std::vector<double>& mean, std::uint64_t first, double chi_median) {
-    std::vector<double> part;
+  LocalFloor(const std::vector<double>& mean, std::uint64_t first, double chi_median)
+      : mean_(&mean), chi_median_(chi_median) {
     for (std::size_t lo = 0; lo < mean.size();) {
       const std::size_t width = std::clamp<std::size_t>((lo + first) / 8, 64, 2048);
       std::size_t hi = std::min(mean.size(), lo + width);
       if (mean.size() - hi < 64) hi = mean.size();
-      part.assign(mean.begin() + static_cast<std::ptrdiff_t>(lo),
-                  mean.begin() + static_cast<std::ptrdiff_t>(hi));
+      stretches_.push_back({lo, hi});
       log_k_.push_back(
           0.5 * std::log(static_cast<double>(lo + first) * static_cast<double>(hi - 1 + first)));
-      log_floor_.push_back(
-          std::log(std::max(median_in_place(part, Middle::upper), 1e-300) / chi_median));
       lo = hi;
     }
   }
@@ -54,15 +74,57 @@ class LocalFloor {
   std::uint64_t end_of(std::size_t piece) const {
     return static_cast<std::uint64_t>(std::exp(log_k_[piece + 1])) + 1;
   }
-  double at(std::size_t piece, std::uint64_t k) const {
+  double at(std::size_t piece, std::uint64_t k) {
     const std::size_t next = std::min(piece + 1, log_k_.size() - 1);
+    const double low = log_floor(piece), high = log_floor(next);
     const double span = log_k_[next] - log_k_[piece];
     const double share = span > 0 ? (std::log(static_cast<double>(k)) - log_k_[piece]) / span : 0;
-    return std::exp(log_floor_[piece] + share * (log_floor_[next] - log_floor_[piece]));
+    return std::exp(low + share * (high - low));
+  }
+  /// Is a piece that goes on to no end nowhere below `level`? "No" where counts do not tell.
+  bool is_above(std::size_t piece, double level) {
+    return piece > 0 && piece + 1 < pieces() && reaches(piece, level) && reaches(piece + 1, level);
   }
 
  private:
-  std::vector<double> log_k_, log_floor_;
+  struct Stretch {
+    std::size_t from = 0, to = 0;
+    double least = 0;      ///< that its median reaches at least
+    double log_floor = 0;  ///< where it is known
+    bool known = false;
+  };
+
+  // The upper median is not below a value that at most half of the coefficients are below.
+  bool reaches(std::size_t index, double level) {
+    constexpr double kRounded = 1 + 1e-6;  // logarithms and back
+    Stretch& stretch = stretches_[index];
+    const double median = level * chi_median_ * kRounded;
+    const std::size_t count = stretch.to - stretch.from;
+    for (const double value : {1.5 * median, median}) {  // the neighbour may ask for a little more
+      if (stretch.least >= median) return true;
+      const auto below = count_below(mean_->data() + stretch.from, count, value);
+      if (static_cast<std::size_t>(below) <= count / 2) stretch.least = value;
+    }
+    return stretch.least >= median;
+  }
+
+  double log_floor(std::size_t index) {
+    Stretch& stretch = stretches_[index];
+    if (stretch.known) return stretch.log_floor;
+    part_.assign(mean_->begin() + static_cast<std::ptrdiff_t>(stretch.from),
+                 mean_->begin() + static_cast<std::ptrdiff_t>(stretch.to));
+    stretch.log_floor =
+        std::log(std::max(median_in_place(part_, Middle::upper), 1e-300) / chi_median_);
+    stretch.known = true;
+    count_work(WorkKind::floor_medians, 1);
+    return stretch.log_floor;
+  }
+
+  const std::vector<double>* mean_;
+  double chi_median_ = 0;
+  std::vector<double> log_k_;
+  std::vector<Stretch> stretches_;
+  std::vector<double> part_;  // scratch
 };
 
 /// Median of the coefficients beside one, its nearest left out: near the zeros of a filter, and
@@ -98,7 +160,7 @@ LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::u
   // Never nearer than 1.5: the floor itself is only that good where the spectrum bends.
   const double limit = std::max(1.5, chi_square_upper_quantile(kFalseAlarm, dof) / dof);
   const double chi_median = chi_square_quantile(0.5, dof) / dof;
-  const LocalFloor floor(mean, first, chi_median);
+  LocalFloor floor(mean, first, chi_median);
   LineClip clip;
   const std::uint64_t end = first + mean.size();
   std::uint64_t k = std::max(first, kLowest);
@@ -106,6 +168,11 @@ LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::u
     const std::uint64_t next =
         piece + 1 < floor.pieces() ? std::min(end, floor.end_of(piece)) : end;
     if (k >= next) continue;
+    const double top = largest(mean.data() + (k - first), static_cast<std::size_t>(next - k));
+    if (floor.is_above(piece, top / limit)) {
+      k = next;
+      continue;
+    }
     // A power law has its least value at an end: only what exceeds that is looked at closely.
     const double least = std::min(floor.at(piece, k), floor.at(piece, next - 1)) * (1 - 1e-9);
     for (; k < next; ++k) {
@@ -157,6 +224,10 @@ void append_without_cycles(const PooledPower& power, double rate_hz, ClippedBins
 std::vector<PooledPower> whole_powers(std::span<const double> record,
                                       const detail::EndNoise* ends) {
   std::vector<PooledPower> powers;
+  if (record.size() >= kSmallestTransform && present_run(record) == record.size()) {
+    powers.push_back(record_power(record, 1, 1, record.size(), ends));
+    return powers;
+  }
   std::vector<double> segment;
   std::uint64_t gap = 0, samples = 0;
   const auto end_segment = [&] {

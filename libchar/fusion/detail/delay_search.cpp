@@ -21,14 +21,14 @@ using FourBits = std::int64_t __attribute__((vector_size(32)));
 /// (the last one may be shorter), and the smallest of each class: starts as many apart as there are
 /// classes, a multiple of the groups' size. Lanes are separate starts, so wider registers give the
 /// same bits.
-LIBCHAR_WIDE_LANES void cityblock(const double* series,
-                                  std::size_t starts,
-                                  const double* query,
-                                  std::size_t dimension,
-                                  double* distances,
-                                  double* smallest,
-                                  double* of_class,
-                                  std::size_t classes) {
+LIBCHAR_LANES void cityblock_lanes(const double* series,
+                                   std::size_t starts,
+                                   const double* query,
+                                   std::size_t dimension,
+                                   double* distances,
+                                   double* smallest,
+                                   double* of_class,
+                                   std::size_t classes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr std::int64_t kNoSign = std::numeric_limits<std::int64_t>::max();
   const FourBits no_sign = {kNoSign, kNoSign, kNoSign, kNoSign};
@@ -65,12 +65,14 @@ LIBCHAR_WIDE_LANES void cityblock(const double* series,
     if (distances[s] < of_class[s % classes]) of_class[s % classes] = distances[s];
   }
 }
+constexpr InLanes<cityblock_lanes> cityblock;
 
-LIBCHAR_WIDE_LANES std::int64_t at_most(const double* values, std::size_t count, double limit) {
+LIBCHAR_LANES std::int64_t at_most_lanes(const double* values, std::size_t count, double limit) {
   std::int64_t sum = 0;
   for (std::size_t k = 0; k < count; ++k) sum += values[k] <= limit ? 1 : 0;
   return sum;
 }
+constexpr InLanes<at_most_lanes> at_most;
 
 /// A limit that at least `wanted` of the values, none negative, keep, and few more: by halves of
 /// what lies between in steps of the last bit. Infinite where so many are not finite.
@@ -95,7 +97,7 @@ double limit_for(const double* values, std::size_t count, std::int64_t wanted) {
 }
 
 /// How many of the values are smaller than each.
-LIBCHAR_WIDE_LANES void ranks(double* values, std::size_t count, std::size_t* places) {
+LIBCHAR_LANES void ranks_lanes(double* values, std::size_t count, std::size_t* places) {
   for (std::size_t k = count; k % 4 != 0; ++k) values[k] = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count; ++i) {
     FourBits smaller = {};
@@ -103,6 +105,7 @@ LIBCHAR_WIDE_LANES void ranks(double* values, std::size_t count, std::size_t* pl
     places[i] = static_cast<std::size_t>(smaller[0] + smaller[1] + smaller[2] + smaller[3]);
   }
 }
+constexpr InLanes<ranks_lanes> ranks;
 
 }  // namespace
 

@@ -19,11 +19,11 @@ namespace {
 constexpr std::size_t kTogether = 256;  // rows whose stamps are looked at together
 
 /// All n stamps are `shortest` (>= 1) to `longest` after the one before.
-LIBCHAR_WIDE_LANES bool steps_between(std::int64_t before,
-                                      const std::int64_t* stamps,
-                                      std::size_t n,
-                                      std::int64_t shortest,
-                                      std::int64_t longest) {
+LIBCHAR_LANES bool steps_between_lanes(std::int64_t before,
+                                       const std::int64_t* stamps,
+                                       std::size_t n,
+                                       std::int64_t shortest,
+                                       std::int64_t longest) {
   // Differences wrap: a rising pair whose difference does not fit becomes negative.
   const auto step = [](std::int64_t from, std::int64_t to) {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(to) -
@@ -37,6 +37,7 @@ LIBCHAR_WIDE_LANES bool steps_between(std::int64_t before,
   for (std::size_t i = 1; i < n; ++i) good &= fits(stamps[i - 1], stamps[i]);
   return good != 0;
 }
+constexpr InLanes<steps_between_lanes> steps_between;
 
 }  // namespace
 

@@ -15,6 +15,38 @@ double median(std::vector<double>& values) {
   return values.empty() ? 0 : median_in_place(values, Middle::lower);
 }
 
+struct SteadyLine {
+  std::int64_t zero, index;  ///< of the first stamp
+  double slope;
+};
+
+// AVX2 turns no 64-bit integer into a double; below 2^51 the mantissa of 1.5 2^52 does it, exactly. n is whole fours.
+LIBCHAR_LANES void extremes_about_lanes(
+    const SteadyLine& line, const std::int64_t* stamps, std::size_t n, double& low, double& high) {
+  using FourStamps [[gnu::vector_size(32)]] = std::int64_t;
+  using FourStampsInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = std::int64_t;
+  constexpr double kMantissa = 6755399441055744.0;  // 1.5 2^52
+  const auto bits = std::bit_cast<std::int64_t>(kMantissa);
+  const Four steps = {0, 1, 2, 3};
+  Four lows = {low, low, low, low}, highs = {high, high, high, high};
+  for (std::size_t i = 0; i < n; i += 4) {
+    const FourStamps whole = *reinterpret_cast<const FourStampsInMemory*>(stamps + i);
+    const FourStamps shifted = (whole - line.zero) + bits;
+    Four d;
+    std::memcpy(&d, &shifted, sizeof d);
+    const Four r =
+        (d - kMantissa) -
+        line.slope * (static_cast<double>(line.index + static_cast<std::int64_t>(i)) + steps);
+    lows = r < lows ? r : lows;
+    highs = r > highs ? r : highs;
+  }
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    low = std::min(low, lows[lane]);
+    high = std::max(high, highs[lane]);
+  }
+}
+constexpr InLanes<extremes_about_lanes> extremes_about;
+
 }  // namespace
 
 void StampSketch::begin_cell(const Pair& read) {
@@ -29,37 +61,16 @@ void StampSketch::begin_cell(const Pair& read) {
   low_ = high_ = residual(pair);
 }
 
-// Lowest and highest of stamps[i] - first - slope (index + i). AVX2 turns no 64-bit integer into a
-// double; below 2^51 the mantissa of 1.5 2^52 does it, exactly.
-LIBCHAR_WIDE_LANES void StampSketch::extremes(
+// Lowest and highest of stamps[i] - first - slope (index + i), four at a time.
+void StampSketch::extremes(
     const std::int64_t* stamps, std::size_t n, const Pair& from, double& low, double& high) const {
   constexpr std::int64_t kLargest = std::int64_t{1} << 51U;
   const std::int64_t first = stamps[0] - zero_.stamp, last = stamps[n - 1] - zero_.stamp;
-  const std::int64_t index = from.index - zero_.index;
   std::size_t i = 0;
   // Stamps rise, or the run would not be one.
   if (first > -kLargest && last < kLargest) {
-    using FourStamps [[gnu::vector_size(32)]] = std::int64_t;
-    using FourStampsInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] =
-        std::int64_t;
-    constexpr double kMantissa = 6755399441055744.0;  // 1.5 2^52
-    const auto bits = std::bit_cast<std::int64_t>(kMantissa);
-    const Four steps = {0, 1, 2, 3};
-    Four lows = {low, low, low, low}, highs = {high, high, high, high};
-    for (; i + 4 <= n; i += 4) {
-      const FourStamps whole = *reinterpret_cast<const FourStampsInMemory*>(stamps + i);
-      const FourStamps shifted = (whole - zero_.stamp) + bits;
-      Four d;
-      std::memcpy(&d, &shifted, sizeof d);
-      const Four r = (d - kMantissa) -
-                     slope_ * (static_cast<double>(index + static_cast<std::int64_t>(i)) + steps);
-      lows = r < lows ? r : lows;
-      highs = r > highs ? r : highs;
-    }
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-      low = std::min(low, lows[lane]);
-      high = std::max(high, highs[lane]);
-    }
+    i = n / 4 * 4;
+    extremes_about({zero_.stamp, from.index - zero_.index, slope_}, stamps, i, low, high);
   }
   for (; i < n; ++i) {
     const double r = residual(from_zero({from.index + static_cast<std::int64_t>(i), stamps[i]}));

@@ -105,13 +105,13 @@ inline __attribute__((always_inline)) void pass_of(std::size_t vectors,
   }
 }
 
-LIBCHAR_WIDE_LANES void run_block(const double* loss,
-                                  const double* weight,
-                                  double* state,
-                                  std::size_t vectors,
-                                  double level,
-                                  double* values,
-                                  std::size_t count) {
+LIBCHAR_LANES void run_block_lanes(const double* loss,
+                                   const double* weight,
+                                   double* state,
+                                   std::size_t vectors,
+                                   double level,
+                                   double* values,
+                                   std::size_t count) {
   std::array<Four, kSectionBlock> sums;
   std::size_t passes = (vectors + kMostVectors - 1) / kMostVectors, done = 0;
   for (bool first = true; done < vectors; first = false, --passes) {
@@ -126,6 +126,7 @@ LIBCHAR_WIDE_LANES void run_block(const double* loss,
   for (std::size_t t = 0; t < count; ++t)
     values[t] = ((sums[t][0] + sums[t][1]) + (sums[t][2] + sums[t][3])) - level;
 }
+constexpr InLanes<run_block_lanes> run_block;
 
 /// x_j += weight_j g - loss_j x_j for every value g, which is replaced by sum_j x_j - level. The
 /// same bits with and without AVX, whatever the number of values a call.

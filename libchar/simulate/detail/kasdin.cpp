@@ -11,7 +11,7 @@ namespace libchar {
 namespace {
 
 /// Sum of a[i] b[i] in eight lanes, the same with and without AVX.
-LIBCHAR_WIDE_LANES double dot(const double* a, const double* b, std::size_t count) {
+LIBCHAR_LANES double dot_lanes(const double* a, const double* b, std::size_t count) {
   Four low = {}, high = {};
   std::size_t i = 0;
   for (; i + 8 <= count; i += 8) {
@@ -23,6 +23,7 @@ LIBCHAR_WIDE_LANES double dot(const double* a, const double* b, std::size_t coun
   const Four sum = low + high;
   return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + rest;
 }
+constexpr InLanes<dot_lanes> dot;
 
 }  // namespace
 

@@ -20,10 +20,10 @@ constexpr Four kSigns = {-1, 1, -1, 1};
 
 }  // namespace
 
-LIBCHAR_WIDE_LANES void gather_columns(const HalfPair& pair,
-                                       const ColumnStep& step,
-                                       double* even,
-                                       double* odd) {
+LIBCHAR_LANES void gather_columns_lanes(const HalfPair& pair,
+                                        const ColumnStep& step,
+                                        double* even,
+                                        double* odd) {
   const double *a = pair.a + step.column, *b = pair.b + step.column;
   const std::size_t width = 2 * step.count;
   for (std::size_t t1 = 0; t1 < step.n1; ++t1, a += step.n2, b += step.n2) {
@@ -42,10 +42,14 @@ LIBCHAR_WIDE_LANES void gather_columns(const HalfPair& pair,
   }
 }
 
-LIBCHAR_WIDE_LANES void scatter_columns(const double* from,
-                                        const ColumnStep& step,
-                                        const ColumnTurns& turns,
-                                        ColumnPlaces to) {
+void gather_columns(const HalfPair& pair, const ColumnStep& step, double* even, double* odd) {
+  return InLanes<gather_columns_lanes>()(pair, step, even, odd);
+}
+
+LIBCHAR_LANES void scatter_columns_lanes(const double* from,
+                                         const ColumnStep& step,
+                                         const ColumnTurns& turns,
+                                         ColumnPlaces to) {
   const std::size_t width = 2 * step.count, period = 2 * step.n1 * step.n2 / step.count,
                     block = step.column / step.count;
   const std::size_t stride = 2 * block % period;
@@ -70,6 +74,13 @@ LIBCHAR_WIDE_LANES void scatter_columns(const double* from,
   }
 }
 
+void scatter_columns(const double* from,
+                     const ColumnStep& step,
+                     const ColumnTurns& turns,
+                     ColumnPlaces to) {
+  return InLanes<scatter_columns_lanes>()(from, step, turns, to);
+}
+
 // Both kinds of bins begin alike: A and B from the transform of a + i b at m and at its mirror, and
 // exp(-i pi k / L).
 #define LIBCHAR_SEPARATE(p, at, back)                                                        \
@@ -91,7 +102,7 @@ LIBCHAR_WIDE_LANES void scatter_columns(const double* from,
   LIBCHAR_FOUR_TO(p.z + at) = br;                                                            \
   LIBCHAR_FOUR_TO(p.z + at + 4) = bi
 
-LIBCHAR_WIDE_LANES void even_bins(const BinRow& p) {
+LIBCHAR_LANES void even_bins_lanes(const BinRow& p) {
   const double cr = p.start.real(), ci = p.start.imag();
   for (std::size_t at = 0; at < 2 * p.bins; at += 8) {
     const std::size_t back = 4 * p.bins - 8 - at;
@@ -103,7 +114,11 @@ LIBCHAR_WIDE_LANES void even_bins(const BinRow& p) {
   }
 }
 
-LIBCHAR_WIDE_LANES void odd_bins(const BinRow& p) {
+void even_bins(const BinRow& p) {
+  return InLanes<even_bins_lanes>()(p);
+}
+
+LIBCHAR_LANES void odd_bins_lanes(const BinRow& p) {
   const double cr = p.start.real(), ci = p.start.imag();
   for (std::size_t at = 0; at < 2 * p.bins; at += 8) {
     const std::size_t back = 4 * p.bins - 8 - at;
@@ -116,21 +131,29 @@ LIBCHAR_WIDE_LANES void odd_bins(const BinRow& p) {
   }
 }
 
+void odd_bins(const BinRow& p) {
+  return InLanes<odd_bins_lanes>()(p);
+}
+
 #define LIBCHAR_WINDOWED(x, at)        \
   (0.5 * LIBCHAR_FOUR(x.centre + at) - \
    0.25 * (LIBCHAR_FOUR(x.low + at) + LIBCHAR_FOUR(x.high + at)))
 
-LIBCHAR_WIDE_LANES void add_windowed(const Neighbours& x, std::size_t bins, double* power) {
+LIBCHAR_LANES void add_windowed_lanes(const Neighbours& x, std::size_t bins, double* power) {
   for (std::size_t at = 0; at < 2 * bins; at += 8) {
     const Four re = LIBCHAR_WINDOWED(x, at), im = LIBCHAR_WINDOWED(x, at + 4);
     LIBCHAR_FOUR_TO(power + at / 2) = LIBCHAR_FOUR(power + at / 2) + (re * re + im * im);
   }
 }
 
-LIBCHAR_WIDE_LANES void add_windowed(const Neighbours& x,
-                                     const Neighbours& y,
-                                     std::size_t bins,
-                                     double* power) {
+void add_windowed(const Neighbours& x, std::size_t bins, double* power) {
+  return InLanes<add_windowed_lanes>()(x, bins, power);
+}
+
+LIBCHAR_LANES void add_two_windowed_lanes(const Neighbours& x,
+                                          const Neighbours& y,
+                                          std::size_t bins,
+                                          double* power) {
   for (std::size_t at = 0; at < 2 * bins; at += 8) {
     const Four re = LIBCHAR_WINDOWED(x, at), im = LIBCHAR_WINDOWED(x, at + 4);
     const Four re2 = LIBCHAR_WINDOWED(y, at), im2 = LIBCHAR_WINDOWED(y, at + 4);
@@ -139,7 +162,11 @@ LIBCHAR_WIDE_LANES void add_windowed(const Neighbours& x,
   }
 }
 
-LIBCHAR_WIDE_LANES double mean_about_first(const double* x, std::size_t n) {
+void add_windowed(const Neighbours& x, const Neighbours& y, std::size_t bins, double* power) {
+  return InLanes<add_two_windowed_lanes>()(x, y, bins, power);
+}
+
+LIBCHAR_LANES double mean_about_first_lanes(const double* x, std::size_t n) {
   const double first = x[0];
   Four low = {}, high = {};
   std::size_t t = 0;
@@ -151,6 +178,10 @@ LIBCHAR_WIDE_LANES double mean_about_first(const double* x, std::size_t n) {
   double total = (sum[0] + sum[2]) + (sum[1] + sum[3]);
   for (; t < n; ++t) total += x[t] - first;
   return first + total / static_cast<double>(n);
+}
+
+double mean_about_first(const double* x, std::size_t n) {
+  return InLanes<mean_about_first_lanes>()(x, n);
 }
 
 }  // namespace libchar::half_segments

@@ -38,7 +38,7 @@ double folded(const double* lanes) {
 }
 
 // sum of d_t = x_t - first
-LIBCHAR_WIDE_LANES double sum_about(const double* x, std::size_t n, double first) {
+LIBCHAR_LANES double sum_about_lanes(const double* x, std::size_t n, double first) {
   double lanes[kLanes] = {};
   std::size_t t = 0;
   for (; t + kLanes <= n; t += kLanes)
@@ -46,9 +46,10 @@ LIBCHAR_WIDE_LANES double sum_about(const double* x, std::size_t n, double first
   for (; t < n; ++t) lanes[t % kLanes] += x[t] - first;
   return folded(lanes);
 }
+constexpr InLanes<sum_about_lanes> sum_about;
 
 // sum of (t - middle) d_t
-LIBCHAR_WIDE_LANES double slope_sum_about(const double* x, std::size_t n, double first) {
+LIBCHAR_LANES double slope_sum_about_lanes(const double* x, std::size_t n, double first) {
   double lanes[kLanes] = {}, position[kLanes];
   const double middle = static_cast<double>(n - 1) / 2;
   for (std::size_t lane = 0; lane < kLanes; ++lane)
@@ -62,13 +63,15 @@ LIBCHAR_WIDE_LANES double slope_sum_about(const double* x, std::size_t n, double
   for (; t < n; ++t) lanes[t % kLanes] += (static_cast<double>(t) - middle) * (x[t] - first);
   return folded(lanes);
 }
+constexpr InLanes<slope_sum_about_lanes> slope_sum_about;
 
-LIBCHAR_WIDE_LANES void subtract_and_window(
+LIBCHAR_LANES void subtract_and_window_lanes(
     const double* x, const double* w, std::size_t n, double first, double mean, double* out) {
   for (std::size_t t = 0; t < n; ++t) out[t] = ((x[t] - first) - mean) * w[t];
 }
+constexpr InLanes<subtract_and_window_lanes> subtract_and_window;
 
-LIBCHAR_WIDE_LANES void subtract_line_and_window(
+LIBCHAR_LANES void subtract_line_and_window_lanes(
     const double* x, const double* w, std::size_t n, const Trend& trend, double* out) {
   const double first = trend.first, slope = trend.slope;
   const double start = trend.mean - slope * (static_cast<double>(n - 1) / 2);
@@ -77,16 +80,19 @@ LIBCHAR_WIDE_LANES void subtract_line_and_window(
         ((x[t] - first) - (start + slope * static_cast<double>(static_cast<std::int64_t>(t)))) *
         w[t];
 }
+constexpr InLanes<subtract_line_and_window_lanes> subtract_line_and_window;
 
 // interleaved real and imaginary parts
-LIBCHAR_WIDE_LANES void add_power(const double* bins, std::size_t n, double* power) {
+LIBCHAR_LANES void add_power_lanes(const double* bins, std::size_t n, double* power) {
   for (std::size_t k = 0; k < n; ++k)
     power[k] += bins[2 * k] * bins[2 * k] + bins[2 * k + 1] * bins[2 * k + 1];
 }
+constexpr InLanes<add_power_lanes> add_power;
 
-LIBCHAR_WIDE_LANES void add(const double* from, std::size_t n, double* to) {
+LIBCHAR_LANES void add_lanes(const double* from, std::size_t n, double* to) {
   for (std::size_t k = 0; k < n; ++k) to[k] += from[k];
 }
+constexpr InLanes<add_lanes> add;
 
 // r_lag = sum_t w_t w_{t + lag hop} / sum w^2; by a transform when there are many lags (an overlap
 // near one).

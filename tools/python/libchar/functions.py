@@ -201,7 +201,8 @@ def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[in
         threads: Optional[int] = None) -> list[Spectrum]:
     """Power spectra by Welch's method, one per channel (`sensorchar psd`).
 
-    segment, segment_s  samples of a segment, or its length in s; None: a quarter of the record
+    segment, segment_s  samples of a segment, or its length in s; None: a quarter of the record, 65536 samples
+                        of one of more than 1048576
     overlap             of segments, a fraction
     window, detrend     hann, rectangular, blackman_harris, flat_top…; none, constant, linear
     sides, scaling      one, two; psd U²/Hz, ps U², lsd U/√Hz, ls U

@@ -29,7 +29,7 @@ namespace {
 
 }  // namespace
 
-LIBCHAR_WIDE_LANES double squares_of_four(const double* z, std::size_t n) {
+LIBCHAR_LANES double squares_of_four_lanes(const double* z, std::size_t n) {
   if (n < 8) return 0;
   double lane[kLanes] = {};
   const std::size_t terms = n - 7, whole = terms / kLanes * kLanes;
@@ -48,7 +48,11 @@ LIBCHAR_WIDE_LANES double squares_of_four(const double* z, std::size_t n) {
   return sum_of_lanes(lane);
 }
 
-LIBCHAR_WIDE_LANES void squares_of_one_two_four(const double* z, std::size_t n, double out[3]) {
+double squares_of_four(const double* z, std::size_t n) {
+  return InLanes<squares_of_four_lanes>()(z, n);
+}
+
+LIBCHAR_LANES void squares_of_one_two_four_lanes(const double* z, std::size_t n, double out[3]) {
   double one[kLanes] = {}, two[kLanes] = {}, four[kLanes] = {};
   const std::size_t whole = n >= 8 ? (n - 7) / kLanes * kLanes : 0;
   Four sum[6] = {};
@@ -81,11 +85,22 @@ LIBCHAR_WIDE_LANES void squares_of_one_two_four(const double* z, std::size_t n, 
   out[2] = sum_of_lanes(four);
 }
 
-LIBCHAR_WIDE_LANES void sum_pairs(const double* z, std::size_t pairs, double origin, double* pair) {
+void squares_of_one_two_four(const double* z, std::size_t n, double out[3]) {
+  return InLanes<squares_of_one_two_four_lanes>()(z, n, out);
+}
+
+LIBCHAR_LANES void sum_pairs_lanes(const double* z,
+                                   std::size_t pairs,
+                                   double origin,
+                                   double* pair) {
   for (std::size_t i = 0; i < pairs; ++i) pair[i] = (z[2 * i] - origin) + (z[2 * i + 1] - origin);
 }
 
-LIBCHAR_WIDE_LANES bool all_finite(const double* z, std::size_t n) {
+void sum_pairs(const double* z, std::size_t pairs, double origin, double* pair) {
+  return InLanes<sum_pairs_lanes>()(z, pairs, origin, pair);
+}
+
+LIBCHAR_LANES bool all_finite_lanes(const double* z, std::size_t n) {
   Four sum[2] = {};  // x - x is 0 for a number, NaN for NaN and infinity
   const std::size_t whole = n / kLanes * kLanes;
   for (std::size_t i = 0; i < whole; i += kLanes)
@@ -97,6 +112,10 @@ LIBCHAR_WIDE_LANES bool all_finite(const double* z, std::size_t n) {
   std::memcpy(lane, sum, sizeof lane);
   for (std::size_t i = whole; i < n; ++i) lane[i % kLanes] += z[i] - z[i];
   return sum_of_lanes(lane) == 0;
+}
+
+bool all_finite(const double* z, std::size_t n) {
+  return InLanes<all_finite_lanes>()(z, n);
 }
 
 }  // namespace libchar

@@ -28,11 +28,11 @@ const std::array<CusumRow, CusumBank::kRows> kCusumRows = cusum_rows();
 
 /// All rows of four sensors: what they saw and their largest sums stay in registers. Rows of both signs of a size share
 /// their products: S + (-t z - c) = S - (t z + c) to the last bit.
-LIBCHAR_WIDE_LANES void cusum_rows_step(double* __restrict sums,
-                                        double* __restrict top,
-                                        const double* const* a,
-                                        const double* const* b,
-                                        std::size_t padded) {
+LIBCHAR_LANES void cusum_rows_step_lanes(double* __restrict sums,
+                                         double* __restrict top,
+                                         const double* const* a,
+                                         const double* const* b,
+                                         std::size_t padded) {
   const Four zero = {0, 0, 0, 0};
   for (std::size_t i = 0; i < padded; i += 4) {
     Four largest = zero;
@@ -62,6 +62,7 @@ LIBCHAR_WIDE_LANES void cusum_rows_step(double* __restrict sums,
     LIBCHAR_FOUR_TO(top + i) = largest;
   }
 }
+constexpr InLanes<cusum_rows_step_lanes> cusum_rows_step;
 
 }  // namespace
 

@@ -30,7 +30,7 @@ constexpr double kBlockMemory = 64;
 #define LIBCHAR_GROUP_TO(kind) LIBCHAR_FOUR_TO(q + 4 * FaultBaseline::kind)
 
 /// f, here and y to x, dx, y less its slow mean, and the means of f.
-LIBCHAR_WIDE_LANES void predict_all(double* q, double* y, std::size_t padded) {
+LIBCHAR_LANES void predict_all_lanes(double* q, double* y, std::size_t padded) {
   const double a = 1 / FaultBaseline::kMeanMemory;
   for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
     const Four here = LIBCHAR_GROUP(kHere), f = LIBCHAR_GROUP(kF);
@@ -50,6 +50,7 @@ LIBCHAR_WIDE_LANES void predict_all(double* q, double* y, std::size_t padded) {
     LIBCHAR_GROUP_TO(kHadF) = here;
   }
 }
+constexpr InLanes<predict_all_lanes> predict_all;
 
 /// The square roots of four numbers that are not negative. (The compiler keeps a way to errno open
 /// and takes them one by one.)
@@ -68,10 +69,10 @@ struct Evidence {
 };
 
 /// e and s to z, the sums of the block, and the evidence of the bank.
-LIBCHAR_WIDE_LANES void standardise_all(double* q,
-                                        const Evidence& out,
-                                        std::size_t padded,
-                                        double inverse_excess) {
+LIBCHAR_LANES void standardise_all_lanes(double* q,
+                                         const Evidence& out,
+                                         std::size_t padded,
+                                         double inverse_excess) {
   const double a = 1 / FaultBaseline::kRecent, root = std::sqrt(inverse_excess);
   const Four least = {-kMostDeviations, -kMostDeviations, -kMostDeviations, -kMostDeviations};
   const Four most = -least;
@@ -106,12 +107,13 @@ LIBCHAR_WIDE_LANES void standardise_all(double* q,
     LIBCHAR_GROUP_TO(kRecentSquare) = recent + here * a * (square - recent);
   }
 }
+constexpr InLanes<standardise_all_lanes> standardise_all;
 
 /// B <- max(B (1 - k), floor), b <- b + k e: with t = z / sqrt(S), k e = B t.
-LIBCHAR_WIDE_LANES void learn_all(double* q,
-                                  const double* tops,
-                                  double frozen,
-                                  std::size_t padded) {
+LIBCHAR_LANES void learn_all_lanes(double* q,
+                                   const double* tops,
+                                   double frozen,
+                                   std::size_t padded) {
   const Four least = {-kClip, -kClip, -kClip, -kClip}, most = -least, none = {0, 0, 0, 0};
   for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
     const Four z = LIBCHAR_GROUP(kZ), root = LIBCHAR_GROUP(kRoot), x = LIBCHAR_GROUP(kX);
@@ -135,6 +137,7 @@ LIBCHAR_WIDE_LANES void learn_all(double* q,
     LIBCHAR_GROUP_TO(kDelayVar) = d > d_floor ? d : d_floor;
   }
 }
+constexpr InLanes<learn_all_lanes> learn_all;
 
 #undef LIBCHAR_GROUP
 #undef LIBCHAR_GROUP_TO

@@ -20,7 +20,7 @@ constexpr std::size_t kAtOnce = 64;             // rows that are not worth shari
 constexpr std::size_t kRows = 4, kColumns = 8;  // of the matrix that are summed in registers
 
 /// Four rows of the sums, from row i on, and their columns on and right of the diagonal.
-LIBCHAR_WIDE_LANES void add_rows(
+LIBCHAR_LANES void add_rows_lanes(
     const double* panel, std::size_t rows, std::size_t width, std::size_t i, double* sums) {
   for (std::size_t j = i / kColumns * kColumns; j < width; j += kColumns) {
     double* const to = sums + i * width + j;
@@ -49,6 +49,7 @@ LIBCHAR_WIDE_LANES void add_rows(
     LIBCHAR_FOUR_TO(to + 3 * width + 4) = d1;
   }
 }
+constexpr InLanes<add_rows_lanes> add_rows;
 
 void on_all_cores(std::size_t count, std::size_t grain, const auto& work) {
   parallel::over_ranges(0, count, grain, [&](std::size_t begin, std::size_t end) {

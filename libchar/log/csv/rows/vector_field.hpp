@@ -14,7 +14,6 @@
 #if defined(LIBCHAR_X86_64)
 #include <immintrin.h>
 
-#define LIBCHAR_AVX2 target("avx2,bmi,bmi2,popcnt")
 #define LIBCHAR_AVX2_INLINE __attribute__((LIBCHAR_AVX2, always_inline))
 
 namespace libchar::vector_parsing {

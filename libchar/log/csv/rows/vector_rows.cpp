@@ -261,9 +261,7 @@ VectorRows parse_vector_rows(std::string_view text,
                              std::span<const VectorColumn> columns,
                              std::size_t max_rows,
                              std::vector<std::uint32_t>& scratch) {
-  static const bool capable = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
-                              __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
-  if (!capable || columns.empty()) return {};
+  if (detail::instructions() < detail::Instructions::avx2 || columns.empty()) return {};
   return parse(text, delimiter, crlf, columns, max_rows, scratch);
 }
 
