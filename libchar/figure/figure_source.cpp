@@ -28,15 +28,6 @@ std::string format_in(const Document& document) {
   return entry != nullptr && entry->value.kind == Document::Kind::text ? entry->value.text : "";
 }
 
-std::string name_for(const std::string& path) {
-  const std::filesystem::path file(path);
-  const std::string stem = file.stem().string();
-  const std::string folder = file.parent_path().filename().string();
-  const bool plain = stem == "report" || stem == "runs" || stem == "curves";
-  if (plain && !folder.empty() && folder != "." && folder != "..") return folder;
-  return stem.ends_with(".sensor") ? stem.substr(0, stem.size() - 7) : stem;
-}
-
 [[noreturn]] void refuse_document(const std::string& file, const std::string& format) {
   const bool scene = format == "scene" || format == "fusion-scene";
   throw input_error("E0975", file)
@@ -96,10 +87,9 @@ void refuse_empty(const FigureSource& source) {
 
 void read_table(FigureSource& out, const std::string& file) {
   const std::string held = curve_in_header(file);
-  if (held.empty()) {
-    add_wide_spectra(out, file);
-    if (out.curves.empty()) refuse_log(file);
-  }
+  if (held.empty()) refuse_log(file);
+  add_wide_spectra(out, file);
+  if (!out.curves.empty()) return;
   for (const bool is_allan : {true, false}) {
     if (held.find(is_allan ? "allan" : "psd") == std::string::npos) continue;
     try {
@@ -116,7 +106,7 @@ void read_table(FigureSource& out, const std::string& file) {
 FigureSource parse_figure_source(std::string_view text, const std::string& path) {
   FigureSource out;
   out.file = path;
-  out.name = name_for(path);
+  out.name = detail::document_name(path);
   read_document(out, parse_json_document(text, path), path);
   refuse_empty(out);
   return out;
@@ -125,7 +115,7 @@ FigureSource parse_figure_source(std::string_view text, const std::string& path)
 FigureSource read_figure_source(const std::string& path) {
   FigureSource out;
   out.file = report_file(path);
-  out.name = name_for(out.file);
+  out.name = detail::document_name(out.file);
   if (!ends_like_a_document(out.file)) {
     read_table(out, out.file);
     refuse_empty(out);
