@@ -140,5 +140,6 @@ TEST_CASE("report prints a report's table") {
   CHECK_THAT(latex.out, Contains("\\begin{tabular}") && Contains("gyro\\_z"));
   const test::Ran csv = test::run({"report", plotted_report(), "--csv", "-c", "accel_z"});
   CHECK_THAT(csv.out, Contains("accel_z,g,white_noise,") && !Contains("gyro_z"));
-  CHECK(test::run({"report", test::fixture("imu_at_rest.csv").string()}).code == 3);
+  // A recording is characterized on the way.
+  CHECK(test::run({"report", test::fixture("imu_at_rest.csv").string()}).code == 0);
 }

@@ -118,6 +118,19 @@ bool is_fitted_in(const Coefficient& c) {
   return c.status != Status::not_fitted;
 }
 
+/// An axis of another group that has all of its candidates.
+bool is_within(const ComparedGroup& group, const std::vector<ComparedGroup>& all) {
+  const auto holds = [&](const ComparedGroup& other) {
+    return other.of_axes && other.quantity == group.quantity &&
+           std::all_of(group.candidates.begin(), group.candidates.end(), [&](const auto& one) {
+             return std::any_of(other.candidates.begin(),
+                                other.candidates.end(),
+                                [&](const auto& c) { return c.side == one.side; });
+           });
+  };
+  return !group.of_axes && !group.axis.empty() && std::any_of(all.begin(), all.end(), holds);
+}
+
 std::vector<ComparedGroup> groups_of(const std::vector<ReportedCharacterization>& sides,
                                      const std::vector<detail::ChannelPairs>& pairs) {
   std::vector<ComparedGroup> out;
@@ -136,6 +149,7 @@ std::vector<ComparedGroup> groups_of(const std::vector<ReportedCharacterization>
                     out.back());
     }
   }
+  for (ComparedGroup& group : out) group.within = is_within(group, out);
   for (ComparedGroup& group : out)
     std::erase_if(group.terms, [](const ComparedTerm& t) {
       return std::none_of(t.values.begin(), t.values.end(), is_fitted_in);
@@ -223,12 +237,8 @@ std::string warning_words(const ComparedGroup& group) {
 /// Of several axes together where there are, else of each.
 std::string comparison_verdict(const CharacterizationComparison& c) {
   std::string out;
-  std::vector<std::string> together;
   for (const ComparedGroup& group : c.groups) {
-    if (group.of_axes) together.push_back(group.quantity);
-    if (!group.of_axes && std::count(together.begin(), together.end(), group.quantity) > 0 &&
-        !group.axis.empty())
-      continue;
+    if (group.within) continue;
     std::string said = group.sentence;
     for (const std::string& more : {group.terms_sentence, warning_words(group)})
       if (!more.empty()) said += (said.empty() || more[0] == ' ' ? "" : " ") + more;

@@ -57,6 +57,7 @@ struct ComparedGroup {
   std::string axis;      ///< "x"; "": none, or several
   std::string unit;      ///< of the first that has one
   bool of_axes = false;  ///< root mean square of several axes
+  bool within = false;   ///< an axis of such a group, which has all of its candidates
   std::vector<Candidate> candidates;
   std::vector<ComparedTerm> terms;
   std::vector<Time> times;

@@ -92,14 +92,6 @@ Cell data_sheet_cell(const ComparedGroup& group, Term term) {
 
 constexpr Term kColumnTerms[] = {Term::white, Term::flicker, Term::walk};
 
-/// An axis of those that are taken together in another group.
-bool is_axis_of_another(const CharacterizationComparison& c, const ComparedGroup& group) {
-  return !group.of_axes && !group.axis.empty() &&
-         std::any_of(c.groups.begin(), c.groups.end(), [&](const ComparedGroup& g) {
-           return g.of_axes && g.quantity == group.quantity;
-         });
-}
-
 }  // namespace
 
 Table detail::comparison_table(const CharacterizationComparison& c, TableGroups groups) {
@@ -111,8 +103,7 @@ Table detail::comparison_table(const CharacterizationComparison& c, TableGroups 
                            fmt::format("adev_{0}s,adev_{0}s_low95,adev_{0}s_high95", tau_s)});
   }
   for (const ComparedGroup& group : c.groups) {
-    if (groups != detail::TableGroups::all &&
-        is_axis_of_another(c, group) != (groups == detail::TableGroups::axes))
+    if (groups != detail::TableGroups::all && group.within != (groups == detail::TableGroups::axes))
       continue;
     for (std::size_t i = 0; i < group.candidates.size(); ++i) {
       Cell name(i == 0 ? group.name : "");
@@ -312,7 +303,7 @@ std::string detail::comparison_html(const CharacterizationComparison& c,
           html_table(detail::comparison_table(c), {.css = "many"}) + "</section>\n";
   std::string first, rest;
   for (const ComparedGroup& group : c.groups) {
-    const bool folds = is_axis_of_another(c, group);
+    const bool folds = group.within;
     (folds ? rest : first) += figure_html(group, folds);
   }
   body += "<section class=\"channel\">\n<h2>Allan deviation</h2>\n" + first +
