@@ -23,9 +23,9 @@ using test::known;
 using test::number_after;
 
 TEST_CASE("trap 1: %YAML:1.0 is the first line for OpenCV readers and absent for PyYAML's") {
-  for (const char* target : {"openvins", "orbslam3", "vins"})
+  for (const char* target : {"openvins", "orbslam3", "vins", "okvis"})
     CHECK(exported(target, test::euroc_imu()).text.starts_with("%YAML:1.0\n"));
-  for (const char* target : {"kalibr", "euroc", "ros"})
+  for (const char* target : {"kalibr", "euroc", "ros", "lio-sam", "fast-lio", "maplab"})
     CHECK_FALSE(has(exported(target, test::euroc_imu()).text, "%YAML"));
 }
 

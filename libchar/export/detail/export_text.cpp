@@ -155,13 +155,18 @@ std::string yaml_line(std::string_view key,
       "{}: {}  # {}{}{}\n", key, export_number(value), unit, origin.empty() ? "" : "; ", origin);
 }
 
-std::string density_lines(const ImuFigures& f, std::string_view indent) {
+std::string row_lines(std::string_view target, const ImuFigures& f, std::string_view indent) {
   std::string out;
   for (const char* sensor : {"accelerometer", "gyroscope"})
-    for (const ConsumerRow* row : rows_of("kalibr", sensor)) {
+    for (const ConsumerRow* row : rows_of(target, sensor)) {
       const ExportFigure& figure = figure_of(f, sensor, row->term);
+      const double rate_hz =
+          std::string_view(sensor) == "gyroscope" ? f.gyroscope_rate_hz : f.accelerometer_rate_hz;
       out += indent;
-      out += yaml_line(row->key, row_value(*row, *figure.value), file_unit(*row), figure.origin);
+      out += yaml_line(row->key,
+                       row_value(*row, *figure.value, {.rate_hz = rate_hz}),
+                       file_unit(*row),
+                       figure.origin);
     }
   return out;
 }

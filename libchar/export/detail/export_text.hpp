@@ -43,8 +43,10 @@ std::string yaml_line(std::string_view key,
                       std::string_view unit,
                       const std::string& origin);
 
-/// The four keys that Kalibr, EuRoC files and OpenVINS share, each line behind `indent`.
-std::string density_lines(const ImuFigures& figures, std::string_view indent = "");
+/// The four numbers of a target as YAML, each line behind `indent`.
+std::string row_lines(std::string_view target,
+                      const ImuFigures& figures,
+                      std::string_view indent = "");
 
 /// What has to be said of three axes: once if it is the same, else axis by axis.
 std::string axis_origins(const std::array<std::string, 3>& origins);

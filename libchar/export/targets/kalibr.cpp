@@ -19,7 +19,7 @@ Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
                        "# ");
   out.text += "rostopic: " + topic_scalar(options.topic) + "\n";
   out.text += yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
-  out.text += density_lines(f);
+  out.text += row_lines("kalibr", f);
   return out;
 }
 
