@@ -214,7 +214,7 @@ TEST_CASE("trap: hostile channel names stay inside comments") {
   models[0].channel = name;
   models[0].kind = "gyroscope";
   models[0].axis = "x";
-  models[0].recording_file = name;
+  models[0].recording.file = name;
   for (const ExportTarget& target : export_targets()) {
     const std::string text = exported(std::string(target.name), models).text;
     CAPTURE(target.name, text);

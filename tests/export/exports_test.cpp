@@ -74,6 +74,13 @@ TEST_CASE("known answers: Kalibr, EuRoC, OpenVINS take the densities as they are
   }
   CHECK(has(exported("kalibr", test::euroc_imu()).text, "\nrostopic: /imu0\nupdate_rate: 200.0"));
   CHECK(has(exported("euroc", test::euroc_imu()).text, "\nrate_hz: 200.0"));
+  // The topic of the bag, unless the options say another one.
+  auto of_bag = test::euroc_imu();
+  for (SensorModel& m : of_bag) m.recording.topic = "/mavros/imu/data_raw";
+  CHECK(has(exported("kalibr", of_bag).text, "\nrostopic: /mavros/imu/data_raw\n"));
+  ExportOptions options;
+  options.topic = "/other";
+  CHECK(has(exported("kalibr", of_bag, options).text, "\nrostopic: /other\n"));
 }
 
 TEST_CASE("known answers: LIO-SAM, OKVIS, maplab take densities, ROVIO and FAST-LIO squares") {
@@ -493,7 +500,7 @@ TEST_CASE("generic JSON reads back to the same model, alone and in a list") {
     CHECK(a.saturation_high == b.saturation_high);
     CHECK(a.bandwidth_hz == b.bandwidth_hz);
     CHECK(a.remarks == b.remarks);
-    CHECK(a.recording_sha256 == b.recording_sha256);
+    CHECK(a.recording.sha256 == b.recording.sha256);
     for (std::size_t t = 0; t < kTerms; ++t) {
       CHECK(a.noise[t].value == b.noise[t].value);
       CHECK(a.noise[t].upper95 == b.noise[t].upper95);

@@ -34,7 +34,7 @@ TEST_CASE("model from a fit: everything a simulation needs, and where it came fr
   CHECK(m.saturation_high == result.channels[5].quality.maximum);
   CHECK(m.tau_min_s == 0.005);
   CHECK(m.tau_max_s == Approx(163.84));  // the last point with 5 degrees of freedom
-  CHECK(m.recording_sha256 == result.log.sha256);
+  CHECK(m.recording.sha256 == result.log.sha256);
   CHECK(m.remarks.size() == 1);
   CHECK_FALSE(m.findings.empty());
   CHECK(!model_of(result, 0).saturation_low);  // never reached

@@ -194,7 +194,7 @@ ReportedCharacterization reported_models(const std::vector<SensorModel>& models,
     channel.shape = name_of(model.noise_shape.kind);
     if (model.noise_shape.taps > 0) channel.shape += fmt::format(" of {}", model.noise_shape.taps);
     channel.curve = sensor_model_curve(model, sensor_model_fit(model)).points;
-    if (out.recording.empty()) out.recording = model.recording_file;
+    if (out.recording.empty()) out.recording = model.recording.file;
     for (Finding one : model.findings) {
       one.subject = model.channel;
       if (one.severity != Severity::note) out.findings.push_back(std::move(one));

@@ -25,7 +25,7 @@ struct Source {
 std::vector<Source> sources(const SensorGroup& group) {
   std::vector<Source> out;
   for (const SensorModel* m : group.all) {
-    const Source source{m->recording_file, m->recording_sha256};
+    const Source source{m->recording.file, m->recording.sha256};
     const bool known = std::any_of(out.begin(), out.end(), [&](const Source& s) {
       return s.sha256 == source.sha256 && s.file == source.file;
     });
@@ -39,7 +39,7 @@ std::string said(const Source& source, const SensorGroup& group) {
     return fmt::format(
         "{} sha256:{}", source.file.empty() ? "a recording" : source.file, source.sha256);
   for (const SensorModel* m : group.all)
-    if (m->recording_sha256.empty() && !m->obtained.empty()) return m->obtained + " (no recording)";
+    if (m->recording.sha256.empty() && !m->obtained.empty()) return m->obtained + " (no recording)";
   return "no recording";
 }
 
@@ -216,7 +216,11 @@ void note_figure(std::vector<std::string>& notes,
     notes.push_back(fmt::format("{}: {}", key, figure.origin));
 }
 
-std::string topic_scalar(const std::string& topic) {
+std::string topic_scalar(const SensorGroup& group, const ExportOptions& options) {
+  std::string topic = options.topic;
+  for (const SensorModel* m : group.all)
+    if (topic.empty()) topic = m->recording.topic;
+  if (topic.empty()) topic = "/imu0";
   const auto allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '~';
   };

@@ -68,8 +68,8 @@ BiasOfAxes bias_of_axes(const SensorTriad& triad,
 /// Puts down what was replaced or left out of `figure` under its key.
 void note_figure(std::vector<std::string>& notes, std::string_view key, const ExportFigure& figure);
 
-/// The topic as a YAML scalar that every reader takes for text. Throws Error(usage) unless it is
-/// made of letters, digits, '_', '/', '~' and does not start with a digit.
-std::string topic_scalar(const std::string& topic);
+/// The topic that the options say, or that of the recording, as a YAML scalar that every reader takes for text. Throws
+/// Error(usage) unless it is made of letters, digits, '_', '/', '~' and does not start with a digit.
+std::string topic_scalar(const SensorGroup& group, const ExportOptions& options);
 
 }  // namespace libchar

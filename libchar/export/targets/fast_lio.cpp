@@ -27,7 +27,7 @@ Export write_fast_lio(const SensorGroup& group, const ExportOptions& options) {
                  "dt^2 a step. The values of its examples (0.1, 0.0001) are far above "
                  "those of a sensor at rest."},
                 "# ");
-  out.text += "common:\n  imu_topic: " + topic_scalar(options.topic) + "\nmapping:\n";
+  out.text += "common:\n  imu_topic: " + topic_scalar(group, options) + "\nmapping:\n";
   out.text += row_lines("fast-lio", f, "  ");
   return out;
 }

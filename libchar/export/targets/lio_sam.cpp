@@ -21,7 +21,7 @@ Export write_lio_sam(const SensorGroup& group, const ExportOptions& options) {
   // Parameters of ROS 2 stand below a node's name, those of ROS 1 below the program's.
   out.text += options.older ? "lio_sam:\n" : "/**:\n  ros__parameters:\n";
   const std::string indent = options.older ? "  " : "    ";
-  out.text += indent + "imuTopic: " + topic_scalar(options.topic) + "\n";
+  out.text += indent + "imuTopic: " + topic_scalar(group, options) + "\n";
   out.text += row_lines("lio-sam", f, indent);
   if (options.gravity) out.text += indent + yaml_line("imuGravity", *options.gravity, "m/s^2", "");
   return out;

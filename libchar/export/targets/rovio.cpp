@@ -45,7 +45,7 @@ Export write_maplab(const SensorGroup& group, const ExportOptions& options) {
                                   "(continuous densities)"),
                        "# ");
   out.text +=
-      "topic: " + topic_scalar(options.topic) + "\nsigmas:\n" + row_lines("maplab", f, "  ");
+      "topic: " + topic_scalar(group, options) + "\nsigmas:\n" + row_lines("maplab", f, "  ");
   return out;
 }
 
