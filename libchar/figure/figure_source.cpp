@@ -12,6 +12,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/figure/detail/sources/curve_sources.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
+#include "libchar/model/foreign_models.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/replay/report/replay_report.hpp"
 
@@ -123,7 +124,7 @@ FigureSource read_figure_source(const std::string& path) {
   }
   const std::string text = read_document_text(out.file);
   const Document document = parse_document(text, out.file);
-  if (format_in(document) == "sensor-model" || document.kind == Document::Kind::list) {
+  if (detail::holds_models(document)) {
     for (const SensorModel& model : read_model_list(out.file)) add_model(out, model);
   } else {
     read_document(out, document, out.file);

@@ -17,6 +17,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/model/foreign_models.hpp"
 #include "libchar/model/model_file.hpp"
 
 namespace libchar {
@@ -259,8 +260,7 @@ ReportedCharacterization read_characterization_report(const std::string& path) {
   if (!ends_like_a_document(file)) return read_curve_candidate(file);
   const std::string text = read_document_text(file);
   const Document document = parse_document(text, file);
-  if (document.kind == Document::Kind::list || format_of(document).starts_with("sensor-model"))
-    return detail::reported_models(read_model_list(file), file);
+  if (detail::holds_models(document)) return detail::reported_models(read_model_list(file), file);
   return read_summary(document, file);
 }
 
