@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
+#include "libchar/report/json/json_report.hpp"
 #include "reading_options.hpp"
 
 namespace sensorchar {
@@ -238,6 +240,26 @@ CharacterizeOptions finish(const AnalysisOptions& a) {
   o.fit.remedies = !a.no_remedies;
   o.fit.second_opinion = !a.no_second_opinion;
   return o;
+}
+
+RecordedReport report_of_recording(Session& session,
+                                   const std::string& log,
+                                   const CharacterizeOptions& options) {
+  CharacterizeOptions how = options;
+  how.ten_a_decade = how.allan.grid == TauGrid::octave;
+  Characterization result = characterize(log, how, session.terminal);
+  result.command = session.command;
+  report_warnings(session, result.log);
+  std::string text = dump_json(json_report(result));
+  return {std::move(result.log), std::move(text)};
+}
+
+void add_recording_options(VerbOptions& verb,
+                           Session& session,
+                           AnalysisOptions& analysis,
+                           bool with_format) {
+  add_reading_options_without_channel(verb, session, analysis.options.reading, with_format);
+  add_still_option(verb, analysis);
 }
 
 }  // namespace sensorchar

@@ -44,4 +44,22 @@ void add_characterize_options(VerbOptions& verb, Session& session, AnalysisOptio
 /// The options of the job. Throws Error(usage) for flags that do not go together.
 libchar::CharacterizeOptions finish(const AnalysisOptions& analysis);
 
+// Recordings where a verb takes reports: they are characterized on the way.
+
+struct RecordedReport {
+  libchar::LogInfo log;
+  std::string text;  ///< report.json, as `characterize` would write it
+};
+
+/// Characterizes a recording in memory; its warnings are said.
+RecordedReport report_of_recording(Session& session,
+                                   const std::string& log,
+                                   const libchar::CharacterizeOptions& options);
+
+/// Options of verbs that take recordings next to reports: how they are read, --still, --temperature.
+void add_recording_options(VerbOptions& verb,
+                           Session& session,
+                           AnalysisOptions& analysis,
+                           bool with_format = true);
+
 }  // namespace sensorchar

@@ -104,11 +104,14 @@ void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
       .group(csv);
 }
 
-void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options) {
+void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options, bool with_format) {
   const std::string csv = "Reading CSV";
-  verb.add_choice(
-          "--format", options.format, libchar::format_words(), "format of the log (default: auto)")
-      .group("Reading");
+  if (with_format)
+    verb.add_choice("--format",
+                    options.format,
+                    libchar::format_words(),
+                    "format of the log (default: auto)")
+        .group("Reading");
   verb.add_text("--preset",
                 options.preset,
                 "instrument that wrote a .imu file: IMAR, LN200, LN200IG, IXSEA, NAVCHIP_INT, "
@@ -183,7 +186,8 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
 
 void add_reading_options_without_channel(VerbOptions& verb,
                                          Session& session,
-                                         libchar::ReadOptions& options) {
+                                         libchar::ReadOptions& options,
+                                         bool with_format) {
   verb.add_texts("--names",
                  options.names,
                  "names for the channels that are read, in order, where the log has none "
@@ -202,7 +206,7 @@ void add_reading_options_without_channel(VerbOptions& verb,
       .group("Reading");
   add_channel_values(verb, options);
   add_time_options(verb, options);
-  add_dialect_options(verb, options);
+  add_dialect_options(verb, options, with_format);
   verb.add_parsed(
           "--missing",
           "VALUE,…",

@@ -9,10 +9,11 @@ namespace sensorchar {
 /// --time-column, …, --strict). `options` and `session` must live until the verb has run.
 void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options);
 
-/// The same without --channel, for verbs that give channels a part each.
+/// The same without --channel, for verbs that give channels a part each, and without --format for one whose own it is.
 void add_reading_options_without_channel(VerbOptions& verb,
                                          Session& session,
-                                         libchar::ReadOptions& options);
+                                         libchar::ReadOptions& options,
+                                         bool with_format = true);
 
 /// The flags that read this log the same way again, what was guessed of it pinned (" --time-column
 /// t --time-unit us").

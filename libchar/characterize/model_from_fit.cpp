@@ -86,8 +86,9 @@ SensorModel sensor_model_from_curve(const Channel& channel,
   model.bandwidth_hz = fit.bandwidth_hz;
   model.obtained = obtained;
   model.method = fit.method;
-  model.recording_file = source.file;
-  model.recording_sha256 = source.sha256;
+  model.recording.file = source.file;
+  model.recording.sha256 = source.sha256;
+  if (source.topic.starts_with('/')) model.recording.topic = source.topic;
   model.duration_s = fit.duration_s;
   model.stretch_s = source.stretch_s;
   set_means(model, fit);

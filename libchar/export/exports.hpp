@@ -35,7 +35,7 @@ struct ExportOptions {
   std::optional<double> bias_tau_s;   ///< of AirSim's bias stability; else its own 500 s and 800 s
   double filter_step_s = 0.01;        ///< PX4 EKF2 and ArduPilot EK3 predict at about this step
   std::optional<double> gravity;      ///< m/s^2, for the consumers that have a key for it
-  std::string topic = "/imu0";
+  std::string topic;                  ///< ROS; else that of the recording, else "/imu0"
   bool older = false;  ///< for releases before the current file formats (Basalt, ORB-SLAM3)
   bool anyway =
       false;  ///< also numbers of models whose noise terms do not describe their recording

@@ -12,6 +12,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/figure/detail/sources/curve_sources.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
+#include "libchar/model/foreign_models.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/replay/report/replay_report.hpp"
 
@@ -26,15 +27,6 @@ std::string format_in(const Document& document) {
   const DocumentEntry* entry =
       document.kind == Document::Kind::map ? document.find("format") : nullptr;
   return entry != nullptr && entry->value.kind == Document::Kind::text ? entry->value.text : "";
-}
-
-std::string name_for(const std::string& path) {
-  const std::filesystem::path file(path);
-  const std::string stem = file.stem().string();
-  const std::string folder = file.parent_path().filename().string();
-  const bool plain = stem == "report" || stem == "runs" || stem == "curves";
-  if (plain && !folder.empty() && folder != "." && folder != "..") return folder;
-  return stem.ends_with(".sensor") ? stem.substr(0, stem.size() - 7) : stem;
 }
 
 [[noreturn]] void refuse_document(const std::string& file, const std::string& format) {
@@ -96,10 +88,9 @@ void refuse_empty(const FigureSource& source) {
 
 void read_table(FigureSource& out, const std::string& file) {
   const std::string held = curve_in_header(file);
-  if (held.empty()) {
-    add_wide_spectra(out, file);
-    if (out.curves.empty()) refuse_log(file);
-  }
+  if (held.empty()) refuse_log(file);
+  add_wide_spectra(out, file);
+  if (!out.curves.empty()) return;
   for (const bool is_allan : {true, false}) {
     if (held.find(is_allan ? "allan" : "psd") == std::string::npos) continue;
     try {
@@ -116,7 +107,7 @@ void read_table(FigureSource& out, const std::string& file) {
 FigureSource parse_figure_source(std::string_view text, const std::string& path) {
   FigureSource out;
   out.file = path;
-  out.name = name_for(path);
+  out.name = detail::document_name(path);
   read_document(out, parse_json_document(text, path), path);
   refuse_empty(out);
   return out;
@@ -125,7 +116,7 @@ FigureSource parse_figure_source(std::string_view text, const std::string& path)
 FigureSource read_figure_source(const std::string& path) {
   FigureSource out;
   out.file = report_file(path);
-  out.name = name_for(out.file);
+  out.name = detail::document_name(out.file);
   if (!ends_like_a_document(out.file)) {
     read_table(out, out.file);
     refuse_empty(out);
@@ -133,7 +124,7 @@ FigureSource read_figure_source(const std::string& path) {
   }
   const std::string text = read_document_text(out.file);
   const Document document = parse_document(text, out.file);
-  if (format_in(document) == "sensor-model" || document.kind == Document::Kind::list) {
+  if (detail::holds_models(document)) {
     for (const SensorModel& model : read_model_list(out.file)) add_model(out, model);
   } else {
     read_document(out, document, out.file);

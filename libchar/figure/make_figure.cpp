@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
+#include <map>
 
+#include "libchar/characterize/compare/reported_characterization.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/figure/detail/curve_figures.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/figure/detail/replay_figures.hpp"
@@ -74,17 +75,77 @@ void refuse_unused(const FigureOptions& options, const FigureKind& kind) {
   if (!options.input.empty() && !kind.of_replay) refuse("`input`", "replay");
 }
 
+void scale(std::vector<double>& values, double factor) {
+  for (double& value : values) value *= factor;
+}
+
+/// A density and a power go with the square of the unit.
+void convert(SourceCurve& curve, const std::string& unit, double factor) {
+  const std::string before = curve.unit;
+  const bool squared =
+      !curve.is_allan && (curve.statistic.ends_with(" PSD") || curve.statistic.ends_with(" PS"));
+  const double of_value = squared ? factor * factor : factor;
+  for (auto* values : {&curve.y,
+                       &curve.low68,
+                       &curve.high68,
+                       &curve.low95,
+                       &curve.high95,
+                       &curve.model,
+                       &curve.data_sheet,
+                       &curve.simulated_y})
+    scale(*values, of_value);
+  for (Asymptote& line : curve.lines)
+    for (double& y : line.y) y *= of_value;
+  for (SourceMark& mark : curve.marks) mark.deviation *= of_value;
+  curve.unit = unit;
+  const std::size_t place = curve.value_unit.find(before);
+  if (place != std::string::npos) curve.value_unit.replace(place, before.size(), unit);
+}
+
+/// The unit that the first of a quantity has; nothing where its own is not known.
+class CommonUnits {
+ public:
+  /// The unit and the factor to it; nothing: it has it already, or none is known.
+  std::optional<std::pair<std::string, double>> of(const std::string& unit) {
+    const auto known = find_unit(unit);
+    if (!known || known->quantity == Quantity::ratio) return std::nullopt;
+    const std::string& common = unit_.try_emplace(known->quantity, unit).first->second;
+    if (common == unit) return std::nullopt;
+    return std::pair(common, unit_factor(unit, common).value_or(1));
+  }
+
+ private:
+  std::map<Quantity, std::string> unit_;
+};
+
+/// Curves of one quantity share an axis: they are in the unit of the first. A record also has a zero, which must
+/// be the same.
+void set_common_units(std::vector<FigureSource>& sources) {
+  CommonUnits curves, traces;
+  for (FigureSource& source : sources) {
+    for (SourceCurve& curve : source.curves)
+      if (const auto to = curves.of(curve.unit)) convert(curve, to->first, to->second);
+    for (SourceTrace& trace : source.traces) {
+      const auto to = traces.of(trace.unit);
+      const auto factor = to ? Unit::sample_factor(trace.unit, to->first) : std::nullopt;
+      if (!factor) continue;
+      scale(trace.low, *factor);
+      scale(trace.high, *factor);
+      trace.unit = to->first;
+    }
+  }
+}
+
 /// Files of one name in several folders are told apart by these.
 std::vector<FigureSource> with_names_apart(std::span<const FigureSource> sources) {
   std::vector<FigureSource> out(sources.begin(), sources.end());
-  for (FigureSource& one : out) {
-    const auto alike = std::count_if(
-        sources.begin(), sources.end(), [&](const FigureSource& s) { return s.name == one.name; });
-    if (alike < 2) continue;
-    const std::filesystem::path file(one.file);
-    const std::string folder = file.parent_path().filename().string();
-    one.name = folder.empty() || folder == one.name ? file.string() : folder + "/" + one.name;
+  std::vector<std::string> names, files;
+  for (const FigureSource& one : out) {
+    names.push_back(one.name);
+    files.push_back(one.file);
   }
+  detail::set_names_apart(names, files);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].name = names[i];
   return out;
 }
 
@@ -109,7 +170,9 @@ Chart make_figure(std::span<const FigureSource> sources, const FigureOptions& op
   const FigureKind& kind = kind_of(options.kind.empty() ? first_kind(sources) : options.kind);
   refuse_mixed(sources, kind);
   refuse_unused(options, kind);
-  Chart out = kind.make(with_names_apart(sources), options);
+  std::vector<FigureSource> drawn = with_names_apart(sources);
+  set_common_units(drawn);
+  Chart out = kind.make(drawn, options);
   for (const auto* axis : {&out.x, &out.y})
     if (axis->log && !(axis->low > 0))
       throw usage_error("E0981", axis == &out.x ? "`x_range`" : "`y_range`")

@@ -271,9 +271,12 @@ Row<SensorModel> deterministic_row() {
 
 const Fields<SensorModel>& recording_fields() {
   static const Fields<SensorModel> rows = {
-      field<&SensorModel::recording_file>("file", {.meaning = "name", .written = Written::always}),
-      field<&SensorModel::recording_sha256>(
+      field<&SensorModel::recording, &SensorModel::Recorded::file>(
+          "file", {.meaning = "name", .written = Written::always}),
+      field<&SensorModel::recording, &SensorModel::Recorded::sha256>(
           "sha256", {.meaning = "of its bytes", .written = Written::always}),
+      field<&SensorModel::recording, &SensorModel::Recorded::topic>("topic",
+                                                                    {.meaning = "of a ROS bag"}),
       field<&SensorModel::duration_s>(
           "duration_s",
           {.unit = "s", .range = kNotNegative, .meaning = "length", .written = Written::always}),

@@ -15,6 +15,7 @@
 #include "libchar/core/document/schema.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/model/foreign_models.hpp"
 #include "libchar/model/model_fields.hpp"
 
 namespace libchar {
@@ -112,6 +113,8 @@ Json models_json(const std::vector<const SensorModel*>& models) {
 
 std::vector<SensorModel> read_model_list(const std::string& path) {
   const Document document = parse_document(read_document_text(path), path);
+  if (std::vector<SensorModel> foreign = detail::foreign_models(document, path); !foreign.empty())
+    return foreign;
   const DocumentEntry* format =
       document.kind == Document::Kind::map ? document.find("format") : nullptr;
   if (format == nullptr || format->value.text != kListFormat) {

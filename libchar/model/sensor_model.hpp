@@ -103,6 +103,10 @@ inline constexpr auto enum_table<DeterministicTerm::Kind> =
     enum_words<DeterministicTerm::Kind, "step warm-up ramp">;
 
 struct SensorModel {
+  struct Recorded {
+    std::string file, sha256;
+    std::string topic;  ///< of a ROS bag: "/imu0"
+  };
   std::string channel;
   std::string unit;
   std::string kind;  ///< "gyroscope", "accelerometer"…; empty: `kind_of` says it from the unit
@@ -137,7 +141,7 @@ struct SensorModel {
          tau_max_s = 0;  ///< range of averaging times that the coefficients were fitted on
   std::string obtained;  ///< "fit of a recording", "fit of an Allan curve", "data sheet"
   std::string method;
-  std::string recording_file, recording_sha256;
+  Recorded recording;
   double duration_s = 0;
   std::optional<Interval>
       stretch_s;  ///< of the recording that was used, where that is not all of it

@@ -36,16 +36,17 @@ void add_devices(ArraySimulation& simulation,
 ArraySimulation simulation_of_models(const std::vector<std::string>& model_files,
                                      const ModelSimulationOptions& options) {
   ArraySimulation simulation;
-  for (const std::string& path : model_files) {
-    const SensorModel model = read_model_file(path);
-    if (simulation.rate_hz == 0) simulation.rate_hz = model.rate_hz;
-    if (!options.rate_hz && model.rate_hz != simulation.rate_hz)
-      throw usage_error("E0721", path)
-          .says(
-              "is a model at {} Hz and the one before at {} Hz", model.rate_hz, simulation.rate_hz)
-          .hint("give one `rate_hz` for all");
-    add_devices(simulation, model, name_of_sensor(model, path), options.devices);
-  }
+  for (const std::string& path : model_files)
+    for (const SensorModel& model : read_model_list(path)) {
+      if (simulation.rate_hz == 0) simulation.rate_hz = model.rate_hz;
+      if (!options.rate_hz && model.rate_hz != simulation.rate_hz)
+        throw usage_error("E0721", path)
+            .says("is a model at {} Hz and the one before at {} Hz",
+                  model.rate_hz,
+                  simulation.rate_hz)
+            .hint("give one `rate_hz` for all");
+      add_devices(simulation, model, name_of_sensor(model, path), options.devices);
+    }
   if (options.rate_hz) simulation.rate_hz = *options.rate_hz;
   return simulation;
 }

@@ -1,9 +1,10 @@
-// Two characterizations, term by term.
+// Characterizations side by side: terms, averaging times, pairs of channels.
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "libchar/allan/confidence.hpp"
 #include "libchar/characterize/compare/characterization_check.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/report/json/json_report.hpp"
@@ -48,27 +49,72 @@ ReportedCharacterization summary(const Coefficient& white,
   return out;
 }
 
+CharacterizationComparison compared(const ReportedCharacterization& a,
+                                    const ReportedCharacterization& b) {
+  std::vector<ReportedCharacterization> sides = {a, b};
+  for (std::size_t i = 0; i < 2; ++i)
+    if (sides[i].name.empty()) sides[i].file = sides[i].name = i == 0 ? "A" : "B";
+  return compare_characterizations(std::move(sides));
+}
+
 TermDifference flicker_difference(const Coefficient& a, const Coefficient& b) {
-  return compare_characterizations(summary(known(1, 0.01), a), summary(known(1, 0.01), b))
-      .channels[0]
+  return compared(summary(known(1, 0.01), a), summary(known(1, 0.01), b))
+      .groups[0]
       .terms[1]
-      .difference;
+      .differences[1];
+}
+
+CharacterizationCompareOptions wanting(const std::string& channel) {
+  CharacterizationCompareOptions out;
+  out.channels = {channel};
+  return out;
+}
+
+/// A channel with a measured curve, `factor` times that of white noise.
+ReportedCharacterization measured(const std::string& name,
+                                  const std::string& channel,
+                                  const std::string& unit,
+                                  std::uint64_t seed,
+                                  double white,
+                                  double floor = 0) {
+  test::Gaussian gauss(seed);
+  std::vector<double> record(8192);
+  double slow = 0;
+  for (double& y : record) y = white * gauss() + (slow += floor * gauss());
+  AllanOptions options;
+  options.grid = TauGrid::octave;
+  AllanCurve curve = allan_deviation(record, 0.01, options);
+  Mixture mixture{};
+  mixture[0] = 0.01 * white * white;
+  mixture[2] = floor * floor / 0.01;
+  add_intervals(curve, mixture);
+  ReportedCharacterization out;
+  out.file = out.name = name;
+  ReportedChannel c;
+  c.name = channel;
+  c.unit = unit;
+  c.curve = curve.points;
+  out.channels.push_back(c);
+  return out;
 }
 
 }  // namespace
 
 TEST_CASE("compared terms: ratio, interval and p of two values") {
-  const auto c = compare_characterizations(summary(known(1, 0.03), known(2, 0.1)),
-                                           summary(known(1.2, 0.04), known(2, 0.1)));
-  const ComparedTerm& white = c.channels[0].terms[0];
+  const auto c =
+      compared(summary(known(1, 0.03), known(2, 0.1)), summary(known(1.2, 0.04), known(2, 0.1)));
+  const ComparedTerm& term = c.groups[0].terms[0];
+  const detail::TermRatio& white = term.ratios[1];
   CHECK(*white.ratio == Approx(1.2));
   // Independent: standard deviations .03 and .04 make .05.
-  CHECK(white.ratio_ci95.low == Approx(1.2 * std::exp(-1.96 * 0.05)));
-  CHECK(white.ratio_ci95.high == Approx(1.2 * std::exp(1.96 * 0.05)));
+  CHECK(white.ci95.low == Approx(1.2 * std::exp(-1.96 * 0.05)));
+  CHECK(white.ci95.high == Approx(1.2 * std::exp(1.96 * 0.05)));
   CHECK(*white.p == Approx(std::erfc(std::log(1.2) / 0.05 / std::sqrt(2.0))).epsilon(1e-3));
-  CHECK(white.difference == TermDifference::larger);
-  CHECK(c.channels[0].terms[1].difference == TermDifference::not_resolved);
-  CHECK_THAT(c.verdict, Contains("1 of 2 terms differ") && Contains("larger"));
+  CHECK(term.differences[1] == TermDifference::larger);
+  CHECK(term.lowest.best == 0);
+  CHECK(term.lowest.not_apart.empty());
+  CHECK(c.groups[0].terms[1].differences[1] == TermDifference::not_resolved);
+  CHECK_THAT(c.verdict, Contains("Lowest N: A; B: A or B, not distinguished"));
 }
 
 TEST_CASE("compared terms: equal sensors are called different in at most 1 % of comparisons") {
@@ -77,11 +123,10 @@ TEST_CASE("compared terms: equal sensors are called different in at most 1 % of 
   constexpr int kPairs = 2000;
   for (int i = 0; i < kPairs; ++i) {
     const auto drawn = [&](double sd) { return known(std::exp(sd * gauss()), sd); };
-    const auto c = compare_characterizations(summary(drawn(0.01), drawn(0.2)),
-                                             summary(drawn(0.02), drawn(0.1)));
+    const auto c = compared(summary(drawn(0.01), drawn(0.2)), summary(drawn(0.02), drawn(0.1)));
     bool any = false;
-    for (const ComparedTerm& t : c.channels[0].terms)
-      any = any || t.difference != TermDifference::not_resolved;
+    for (const ComparedTerm& t : c.groups[0].terms)
+      any = any || t.differences[1] != TermDifference::not_resolved;
     different += any ? 1 : 0;
   }
   CHECK(different <= 38);  // 20, and four standard deviations
@@ -108,9 +153,8 @@ TEST_CASE("compared terms: an interval that reaches zero claims nothing") {
 
 TEST_CASE("checks of a comparison fail beyond chance only, and where B lost what A knew") {
   const auto failed = [](const Coefficient& a, const Coefficient& b, const std::string& check) {
-    return failures(
-        compare_characterizations(summary(known(1, 0.01), a), summary(known(1, 0.01), b)),
-        parse_characterization_check(check));
+    return failures(compared(summary(known(1, 0.01), a), summary(known(1, 0.01), b)),
+                    parse_characterization_check(check));
   };
   CHECK(failed(known(1, 0.05), known(1.3, 0.05), "bias_instability+10%").size() == 1);
   CHECK(failed(known(1, 0.05), known(1.3, 0.05), "x:bias_instability+20%").empty());
@@ -127,19 +171,116 @@ TEST_CASE("checks of a comparison fail beyond chance only, and where B lost what
 
 TEST_CASE("compared channels: units are converted, unlike ones and missing channels said") {
   auto b = summary(known(std::numbers::pi / 180, 0.01), known(1, 0.1), "rad/s");
-  const auto c = compare_characterizations(summary(known(1, 0.01), known(1, 0.1)), b);
-  CHECK(*c.channels[0].terms[0].ratio == Approx(1));
-  CHECK_THAT(c.channels[0].remarks.at(0), Contains("Unit"));
+  const auto a = summary(known(1, 0.01), known(1, 0.1));
+  const auto c = compared(a, b);
+  CHECK(*c.groups[0].terms[0].ratios[1].ratio == Approx(1));
+  CHECK_THAT(c.remarks.at(0), Contains("unit deg/s in A, rad/s in B"));
   b.channels[0].unit = "Pa";
-  CHECK(compare_characterizations(summary(known(1, 0.01), known(1, 0.1)), b)
-            .channels[0]
-            .terms.empty());
-  b.channels[0].name = "y";
-  const auto apart = compare_characterizations(summary(known(1, 0.01), known(1, 0.1)), b);
-  REQUIRE(apart.channels.size() == 2);
-  CHECK_FALSE(apart.channels[0].in_b);
-  CHECK_FALSE(apart.channels[1].in_a);
-  CHECK_THAT(apart.verdict, Contains("No channel is in both"));
+  CHECK_THROWS_WITH(
+      compared(a, b),
+      Contains("E0976") && Contains("x of A is in deg/s") && Contains("x of B is in Pa"));
+  auto both = b;
+  both.channels.push_back(a.channels[0]);
+  const auto apart = compared(a, both);
+  REQUIRE(apart.groups.size() == 1);
+  CHECK_THAT(apart.remarks.at(0), Contains("x: only in B (Pa)"));
+}
+
+TEST_CASE("compared channels: kind and axis pair them, whatever their names") {
+  const auto sheet = [](const std::string& gyroscope) {
+    ReportedCharacterization out = summary(known(3, 0.01), known(1, 0.1));
+    out.channels[0].name = gyroscope;
+    out.file = out.name = "sheet";
+    return out;
+  };
+  for (const char* name : {"wx", "GyrX", "angular_velocity.x", "imu_gyro_x"}) {
+    CAPTURE(name);
+    auto a = summary(known(1, 0.01), known(1, 0.1), "rad/s");
+    a.channels[0].name = name;
+    const auto c = compared(a, sheet("gyro_x"));
+    REQUIRE(c.groups.size() == 1);
+    CHECK(c.groups[0].name == "gyro_x");
+    CHECK(c.groups[0].axis == "x");
+    // Another axis is another channel.
+    CHECK_THROWS_WITH(compared(a, sheet("gyro_y")), Contains("E0976"));
+    // Without an axis it stands for each.
+    CHECK(compared(a, sheet("gyroscope")).groups[0].candidates.size() == 2);
+  }
+}
+
+TEST_CASE("compared channels: axes of several sides are taken together as well") {
+  auto a = summary(known(1, 0.01), known(1, 0.1)), b = summary(known(2, 0.01), known(1, 0.1));
+  for (auto* side : {&a, &b}) {
+    side->channels[0].name = "gyro_x";
+    for (const char* name : {"gyro_y", "gyro_z"}) {
+      side->channels.push_back(side->channels[0]);
+      side->channels.back().name = name;
+    }
+  }
+  a.channels[2].term[0] = known(3, 0.01);
+  const auto c = compared(a, b);
+  REQUIRE(c.groups.size() == 4);
+  CHECK(c.groups[0].name == "gyro (x, y, z)");
+  CHECK(c.groups[0].of_axes);
+  CHECK(*c.groups[0].terms[0].values[0].value == Approx(std::sqrt((1 + 1 + 9) / 3.0)));
+  CHECK(c.groups[0].terms[0].lowest.best == 0);
+  CHECK(c.groups[3].terms[0].lowest.best == 1);
+  const auto one = compare_characterizations({a, b}, wanting("gyro_y"));
+  CHECK(one.groups.size() == 1);
+  CHECK_THROWS_WITH(compare_characterizations({a, b}, wanting("gyro_w")), Contains("E0977"));
+}
+
+TEST_CASE("compared curves: the lowest at each averaging time, of known truth") {
+  // White 1 and 3, walk .05 and .005 a step: they cross at about tau = 3 s² … where both are 1.
+  const auto c = compare_characterizations({measured("quick", "wx", "deg/s", 1, 1, 0.1),
+                                            measured("slow", "gyro_x", "deg/s", 2, 3, 0.01),
+                                            measured("worse", "GyrX", "deg/s", 3, 30, 0.3)});
+  REQUIRE(c.groups.size() == 1);
+  const ComparedGroup& group = c.groups[0];
+  REQUIRE(group.ranges.size() >= 2);
+  CHECK(group.ranges[0].lowest == std::vector<std::size_t>{0});
+  CHECK(group.ranges[1].lowest == std::vector<std::size_t>{1});
+  // .01 / tau + .1² tau / .03 = .09 / tau + .01² tau / .03: tau = .49 s.
+  CHECK(group.ranges[0].to_s > 0.3);
+  CHECK(group.ranges[0].to_s < 0.8);
+  CHECK_THAT(c.verdict, Contains("gyro_x: quick is lowest below") && Contains("slow from"));
+}
+
+TEST_CASE("compared curves: of equal sensors none is the lowest, in 99 of 100") {
+  int called = 0;
+  constexpr int kDraws = 400;
+  for (int i = 0; i < kDraws; ++i) {
+    std::vector<ReportedCharacterization> sides;
+    for (int k = 0; k < 3; ++k)
+      sides.push_back(measured(std::string(1, static_cast<char>('a' + k)),
+                               "x",
+                               "deg/s",
+                               static_cast<std::uint64_t>(1000 + 3 * i + k),
+                               1));
+    const auto c = compare_characterizations(std::move(sides));
+    bool any = false;
+    for (const ComparedGroup::Time& time : c.groups[0].times)
+      any = any || time.lowest.not_apart.size() < 2;
+    called += any ? 1 : 0;
+  }
+  CHECK(called <= 12);  // 4, and four standard deviations
+}
+
+TEST_CASE("compared sensors: what is not to be relied on is not the lowest, and is said") {
+  auto moved = measured("moved", "x", "deg/s", 1, 0.1);
+  Finding motion = finding("moves_throughout", "The sensor moves throughout.");
+  motion.subject = "x";
+  moved.findings.push_back(motion);
+  const auto c = compare_characterizations(
+      {moved, measured("b", "x", "deg/s", 2, 1), measured("c", "x", "deg/s", 3, 3)});
+  CHECK_FALSE(c.groups[0].candidates[0].takes_part);
+  CHECK(c.groups[0].ranges[0].lowest == std::vector<std::size_t>{1});
+  CHECK_THAT(c.verdict, Contains("moved is left out: motion throughout"));
+  moved.findings[0].severity = Severity::caution;
+  const auto careful = compare_characterizations(
+      {moved, measured("b", "x", "deg/s", 2, 1), measured("c", "x", "deg/s", 3, 3)});
+  CHECK_THAT(careful.verdict,
+             Contains("moved is lowest") && Contains("Check moved first: motion throughout"));
 }
 
 TEST_CASE("compared channels: another band or shape is said") {
@@ -148,9 +289,9 @@ TEST_CASE("compared channels: another band or shape is said") {
   b.channels[0].band.top_hz = 3;
   b.channels[0].shape = "boxcar of 4";
   b.channels[0].events = 2;
-  const auto c = compare_characterizations(summary(known(1, 0.01), known(1, 0.1)), b);
-  REQUIRE(c.channels[0].remarks.size() == 3);
-  CHECK_THAT(c.channels[0].remarks[0], Contains("up to 3") && Contains("the whole spectrum"));
+  const auto c = compared(summary(known(1, 0.01), known(1, 0.1)), b);
+  REQUIRE(c.remarks.size() == 3);
+  CHECK_THAT(c.remarks[0], Contains("up to 3") && Contains("the whole spectrum"));
 }
 
 TEST_CASE("a report that was written is read back and equals itself") {
@@ -166,8 +307,13 @@ TEST_CASE("a report that was written is read back and equals itself") {
       CHECK(a.channels[i].term[t].status == imu.channels[i].fit->term[t].status);
     }
   }
-  const auto same = compare_characterizations(a, a);
-  CHECK_THAT(same.verdict, Contains("No difference beyond chance"));
+  const auto same = compare_characterizations({a, a});
+  for (const ComparedGroup& group : same.groups) {
+    for (const ComparedGroup::Time& time : group.times) CHECK(time.lowest.not_apart.size() == 1);
+    for (const ComparedTerm& term : group.terms)
+      if (term.lowest.best) CHECK(term.lowest.not_apart.size() == 1);
+  }
+  CHECK_THAT(same.verdict, Contains("Not distinguished"));
 }
 
 TEST_CASE("what is no characterization is refused in a sentence") {

@@ -111,6 +111,22 @@ TEST_CASE(
            12);
 }
 
+TEST_CASE("simulated: ROVIO's and FAST-LIO's filters believe of a second what the record has") {
+  // What each adds to the variance of the velocity a second, by its own propagation: ROVIO dt vel a step,
+  // FAST-LIO dt^2 acc_cov.
+  const double dt = 1 / kRate;
+  const std::string rovio = exported("rovio", device()).text;
+  const YAML::Node fast = YAML::Load(exported("fast-lio", device()).text)["mapping"];
+  const auto of_rovio = [&](const char* key) { return std::sqrt(number_after(rovio, key)); };
+  const auto of_fast = [&](const char* key) { return std::sqrt(fast[key].as<double>()); };
+  recovers(
+      {of_rovio("att_0") / std::sqrt(dt), of_rovio("gyb_0") * std::sqrt(dt)}, kGyroQ, kGyroK, 121);
+  recovers(
+      {of_rovio("vel_0") / std::sqrt(dt), of_rovio("acb_0") * std::sqrt(dt)}, kAccQ, kAccK, 122);
+  recovers({of_fast("gyr_cov"), of_fast("b_gyr_cov") * dt}, kGyroQ, kGyroK, 123);
+  recovers({of_fast("acc_cov"), of_fast("b_acc_cov") * dt}, kAccQ, kAccK, 124);
+}
+
 TEST_CASE("simulated: Basalt's std are densities") {
   const Json file = parse_json(exported("basalt", device()).text, "c")["value0"];
   const double root = std::sqrt(file["imu_update_rate"].get<double>());

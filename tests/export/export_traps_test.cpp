@@ -23,9 +23,9 @@ using test::known;
 using test::number_after;
 
 TEST_CASE("trap 1: %YAML:1.0 is the first line for OpenCV readers and absent for PyYAML's") {
-  for (const char* target : {"openvins", "orbslam3", "vins"})
+  for (const char* target : {"openvins", "orbslam3", "vins", "okvis"})
     CHECK(exported(target, test::euroc_imu()).text.starts_with("%YAML:1.0\n"));
-  for (const char* target : {"kalibr", "euroc", "ros"})
+  for (const char* target : {"kalibr", "euroc", "ros", "lio-sam", "fast-lio", "maplab"})
     CHECK_FALSE(has(exported(target, test::euroc_imu()).text, "%YAML"));
 }
 
@@ -214,7 +214,7 @@ TEST_CASE("trap: hostile channel names stay inside comments") {
   models[0].channel = name;
   models[0].kind = "gyroscope";
   models[0].axis = "x";
-  models[0].recording_file = name;
+  models[0].recording.file = name;
   for (const ExportTarget& target : export_targets()) {
     const std::string text = exported(std::string(target.name), models).text;
     CAPTURE(target.name, text);

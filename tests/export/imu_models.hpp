@@ -38,8 +38,8 @@ inline libchar::SensorModel model(const std::string& channel,
   m.noise[0] = levels.q;
   m.noise[1] = levels.b;
   m.noise[2] = levels.k;
-  m.recording_file = "imu.csv";
-  m.recording_sha256 = std::string(64, 'a');
+  m.recording.file = "imu.csv";
+  m.recording.sha256 = std::string(64, 'a');
   m.obtained = "fit of a recording";
   m.duration_s = 7200;
   m.tau_min_s = 0.005;

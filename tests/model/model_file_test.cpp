@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <regex>
 #include <sstream>
 
@@ -10,6 +11,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/utf8.hpp"
 #include "tests/report/synthetic.hpp"
+#include "tests/support/shared.hpp"
 
 using namespace libchar;
 
@@ -34,7 +36,7 @@ TEST_CASE("model from a fit: everything a simulation needs, and where it came fr
   CHECK(m.saturation_high == result.channels[5].quality.maximum);
   CHECK(m.tau_min_s == 0.005);
   CHECK(m.tau_max_s == Approx(163.84));  // the last point with 5 degrees of freedom
-  CHECK(m.recording_sha256 == result.log.sha256);
+  CHECK(m.recording.sha256 == result.log.sha256);
   CHECK(m.remarks.size() == 1);
   CHECK_FALSE(m.findings.empty());
   CHECK(!model_of(result, 0).saturation_low);  // never reached
@@ -120,6 +122,40 @@ TEST_CASE(
   m.gauss_markov = {0.02, 61.25, {0.017, 0.025}, {40}};
   const SensorModel read = parse_sensor_model(model_yaml(m), "model.yaml");
   CHECK(read.gauss_markov == m.gauss_markov);
+}
+
+TEST_CASE("model files: Kalibr's and imu_utils' are read, each by its own convention") {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& text) {
+    const std::string path = (folder / name).string();
+    std::ofstream(path) << text;
+    return path;
+  };
+  const std::string kalibr =
+      "rostopic: /imu0\nupdate_rate: 200.0\naccelerometer_noise_density: 2.0e-3\n"
+      "accelerometer_random_walk: 3.0e-3\ngyroscope_noise_density: 1.7e-4\n"
+      "gyroscope_random_walk: 1.9e-5\n";
+  const auto models = read_model_list(write("kalibr.yaml", kalibr));
+  REQUIRE(models.size() == 2);
+  CHECK(models[0].unit == "rad/s");
+  CHECK(*models[0][Term::white].value == 1.7e-4);
+  CHECK(*models[1][Term::walk].value == 3.0e-3);
+  CHECK(models[1].rate_hz == 200);
+  const std::string axes =
+      "  x-axis:\n    gyr_n: 4.0e-3\n    gyr_w: 2.0e-5\n"
+      "  avg-axis:\n    gyr_n: 4.0e-3\n    gyr_w: 2.0e-5\n";
+  CHECK_THROWS_WITH(read_model_list(write("a.yaml", "%YAML:1.0\n---\ntype: IMU\nGyr:\n" + axes)),
+                    Catch::Contains("rate_hz: 200"));
+  const auto one = read_model_list(write("b.yaml", "%YAML:1.0\n---\nrate_hz: 400\nGyr:\n" + axes));
+  REQUIRE(one.size() == 1);
+  // sqrt(f) sigma(1 s), and the floor of bias instability.
+  CHECK(*one[0][Term::white].value == Approx(4.0e-3 / 20));
+  CHECK(*one[0][Term::flicker].value == Approx(2.0e-5 / 0.664).epsilon(1e-3));
+  CHECK_FALSE(one[0][Term::walk].value);
+  const auto fork =
+      read_model_list(write("c.yaml", "%YAML:1.0\n---\ndensities: true\nGyr:\n" + axes));
+  CHECK(*fork[0][Term::white].value == 4.0e-3);
+  CHECK(*fork[0][Term::walk].value == 2.0e-5);
 }
 
 TEST_CASE("model file: what was no noise in the recording is data, and reads back") {

@@ -6,7 +6,7 @@ namespace sensorchar {
 namespace {
 
 /// In single quotes, for sh and its relatives.
-std::string quoted(std::string_view text) {
+std::string quoted_word(std::string_view text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
@@ -164,7 +164,7 @@ std::string zsh_option(const OptionUsage& option) {
   else if (!alone || !option.excludes.empty())
     line += "'(" + apart + ")'";
   line += alone ? option.flags.front() : fmt::format("{{{}}}", fmt::join(option.flags, ","));
-  return line + quoted(rest) + " \\\n";
+  return line + quoted_word(rest) + " \\\n";
 }
 
 std::string fish_option(const ProgramUsage& program,
@@ -204,7 +204,7 @@ std::string bash_completion(const ProgramUsage& program) {
       "# bash completion of {0}: made by {0} --generate bash\n\n_{0}_flags() {{\n  case $1 in\n",
       program.name);
   for (const VerbUsage& verb : program.verbs)
-    text += fmt::format("    {}) echo {} ;;\n", verb.name, quoted(all_flags(verb)));
+    text += fmt::format("    {}) echo {} ;;\n", verb.name, quoted_word(all_flags(verb)));
   text += fmt::format(
       "  esac\n}}\n\n# Values of a flag of a verb; nothing for one without a "
       "value.\n_{}_value() {{\n  case \"$1 $2\" in\n",
@@ -214,8 +214,8 @@ std::string bash_completion(const ProgramUsage& program) {
       if (option.kind == ValueKind::none) continue;
       std::string patterns;
       for (const std::string& flag : option.flags)
-        patterns += (patterns.empty() ? "" : " | ") + quoted(verb.name + " " + flag);
-      text += fmt::format("    {}) echo {} ;;\n", patterns, quoted(bash_answer(option)));
+        patterns += (patterns.empty() ? "" : " | ") + quoted_word(verb.name + " " + flag);
+      text += fmt::format("    {}) echo {} ;;\n", patterns, quoted_word(bash_answer(option)));
     }
   std::string own;
   for (const OptionUsage& option : program.options)
@@ -223,8 +223,8 @@ std::string bash_completion(const ProgramUsage& program) {
   return text + "  esac\n}\n" +
          filled(kBashFrame,
                 {{"@PROGRAM@", program.name},
-                 {"@FLAGS@", quoted(own)},
-                 {"@VERBS@", quoted(all_verbs(program))}});
+                 {"@FLAGS@", quoted_word(own)},
+                 {"@VERBS@", quoted_word(all_verbs(program))}});
 }
 
 std::string zsh_completion(const ProgramUsage& program) {
@@ -237,7 +237,7 @@ std::string zsh_completion(const ProgramUsage& program) {
   }
   text += fmt::format("_{}_verbs() {{\n  local -a verbs\n  verbs=(\n", program.name);
   for (const VerbUsage& verb : program.verbs)
-    text += "    " + quoted(verb.name + ":" + brief(verb.what)) + "\n";
+    text += "    " + quoted_word(verb.name + ":" + brief(verb.what)) + "\n";
   text += "    'help:what a verb does'\n  )\n  _describe verb verbs\n}\n\n";
   text += fmt::format(
       "_{0}() {{\n  if (( CURRENT == 2 )); then\n    _{0}_verbs\n    return\n  fi\n  local "

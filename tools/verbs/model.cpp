@@ -233,7 +233,9 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
                  targets_that_take(&ExportTakes::gravity) + ": gravity in m/s² (not written)",
                  kSmall);
   sub.add_text(
-         "--topic", options.topic, targets_that_take(&ExportTakes::topic) + ": ROS topic (/imu0)")
+         "--topic",
+         options.topic,
+         targets_that_take(&ExportTakes::topic) + ": ROS topic (default: of the bag, else /imu0)")
       .value_name("NAME");
   sub.add_flag("--anyway",
                options.anyway,

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <memory>
 
+#include "analysis_options.hpp"
+#include "libchar/characterize/compare/paired_channels.hpp"
 #include "libchar/characterize/compare/reported_findings.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/figure/draw_figure.hpp"
@@ -27,6 +30,7 @@ struct PlotVerb {
   FigureOptions figure;
   DrawingOptions drawing;
   bool force = false, list = false;
+  AnalysisOptions analysis;
 };
 
 /// "85mm", "3.3in", "12cm", "240pt", or a column of a journal.
@@ -110,6 +114,26 @@ std::vector<std::string> named(std::vector<std::string> paths) {
   return paths;
 }
 
+/// A recording is characterized on the way.
+FigureSource source_of(Session& session, const PlotVerb& verb, const std::string& file) {
+  if (!detail::is_recording(file)) return read_figure_source(file);
+  FigureSource out =
+      parse_figure_source(report_of_recording(session, file, finish(verb.analysis)).text, file);
+  out.name = detail::document_name(file);
+  return out;
+}
+
+/// The names of channels that are meant, also those by which `channels` means what they measure.
+std::vector<std::string> meant_channels(const FigureSource& source,
+                                        const std::vector<std::string>& channels) {
+  std::vector<std::string> out = channels;
+  for (const SourceCurve& curve : source.curves)
+    for (const std::string& one : channels)
+      if (matches(one, detail::usual_channel_name(curve.channel, curve.unit)))
+        out.push_back(curve.channel);
+  return out;
+}
+
 void run_plot(Session& session, PlotVerb& verb) {
   if (verb.list) return print_kinds();
   refuse_nothing_asked(verb);
@@ -122,7 +146,7 @@ void run_plot(Session& session, PlotVerb& verb) {
     if (!path->empty() && *path != "-") foresee_output(*path, verb.files, verb.force);
   refuse_one_name(named({verb.output, verb.gnuplot, verb.csv}));
   std::vector<FigureSource> sources;
-  for (const std::string& file : verb.files) sources.push_back(read_figure_source(file));
+  for (const std::string& file : verb.files) sources.push_back(source_of(session, verb, file));
   const Chart figure = make_figure(sources, verb.figure);
   std::vector<OutputFile> made;
   Findings warnings;
@@ -132,7 +156,8 @@ void run_plot(Session& session, PlotVerb& verb) {
   if (!verb.csv.empty()) made.push_back({verb.csv, figure_csv(figure)});
   deliver(made, verb.force);
   for (const FigureSource& source : sources)
-    report_findings(session, source.name, source.findings, verb.figure.channels);
+    report_findings(
+        session, source.name, source.findings, meant_channels(source, verb.figure.channels));
   session.terminal.warn(warnings, verb.output);
 }
 
@@ -173,7 +198,7 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
   options.add_texts(
       "FILE",
       verb->files,
-      "report.json of characterize or replay (or its folder), what allan or psd print, "
+      "recordings, report.json of characterize or replay (or its folder), what allan or psd print, "
       "curves.csv, sensor models; several are drawn over each other");
   options
       .add_text(
@@ -185,10 +210,11 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
                      "which figure (default: allan of a characterization, front of a replay)");
   options.add_flag("--list", verb->list, "list the figures").alone();
   options
-      .add_texts(
-          "-c,--channel",
-          verb->figure.channels,
-          "channels (of a replay: methods or sensors) by name or pattern such as 'gyro*' (all)")
+      .add_texts("-c,--channel",
+                 verb->figure.channels,
+                 "channels (of a replay: methods or sensors) by name or pattern such as 'gyro*'; "
+                 "gyro_x fits "
+                 "any channel that measures it (all)")
       .separated_by_commas()
       .once_each();
   options.add_text("--algorithm",
@@ -205,6 +231,7 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
   options.add_choice(
       "--format", verb->format, words_of<FigureFormat>(), "what -o is (by its name)");
   options.add_flag("--force", verb->force, "overwrite the output files");
+  add_recording_options(options, session, verb->analysis, false);
   add_only(options, *verb);
   return [&session, verb] { run_plot(session, *verb); };
 }

@@ -1,131 +1,273 @@
-// Ratio of two independent coefficients, each with a 95 % interval [l, u] about its value c: in logarithms the interval of the
-// difference from the distances to the ends that face each other (MOVER: Zou & Donner, Stat. Med. 27 (2008) 1693),
-//   ln r -+ ...,   r = b / a:  lower  ln r - sqrt((ln b - ln l_b)² + (ln u_a - ln a)²),
-//                              upper  ln r + sqrt((ln u_b - ln b)² + (ln a - ln l_a)²),
-// and p from the distance to the end that faces r = 1, as if it were 1.96 standard deviations. An interval that reaches zero makes that
-// distance infinite, and p 1: nothing is claimed. A value against an upper limit differs when the whole interval is above the limit.
+// Channels that measure the same are paired (paired_channels.hpp), brought to one unit, and compared term by
+// term and averaging time by averaging time. Each judgement gets its share of the probability by which equal
+// sensors may be called different (Bonferroni): pairs of candidates times terms and octaves of averaging time.
 #include "libchar/characterize/compare/characterization_comparison.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <map>
 
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/characterize/compare/paired_channels.hpp"
+#include "libchar/characterize/compare/reported_findings.hpp"
+#include "libchar/characterize/detail/averaging_times.hpp"
+#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/term_cells.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
 namespace {
 
-bool relied_on(const Coefficient& c) {
-  return c.status == Status::detected || c.status == Status::given ||
-         c.status == Status::not_detected;
+using detail::PairedChannel;
+
+bool touches_noise(const Finding& finding) {
+  return std::any_of(finding.effects.begin(), finding.effects.end(), [](const auto& effect) {
+    return effect.quantity != Affected::mean && effect.quantity != Affected::weights &&
+           effect.quantity != Affected::verdict;
+  });
 }
 
-/// Distance in ln from the value to an end of its interval.
-double below(const Coefficient& c) {
-  return std::log(*c.value) - std::log(c.ci95.low);
-}
-double above(const Coefficient& c) {
-  return std::log(c.ci95.high) - std::log(*c.value);
+/// A misfit is of coefficients, which say so themselves: the curve is as it was measured.
+bool spoils(const Finding& finding) {
+  return finding.severity == Severity::bad && finding.code != "misfit" && touches_noise(finding);
 }
 
-void compare_values(ComparedTerm& t) {
-  const double log_ratio = std::log(*t.b.value / *t.a.value);
-  const double down = std::hypot(below(t.b), above(t.a)), up = std::hypot(above(t.b), below(t.a));
-  t.ratio = std::exp(log_ratio);
-  t.ratio_ci95 = {std::exp(log_ratio - down), std::exp(log_ratio + up)};
-  const double facing = log_ratio > 0 ? down : up;
-  const double z = facing > 0 ? kNormal95 * std::abs(log_ratio) / facing : 0;
-  t.p = std::erfc(z / std::sqrt(2.0));
-}
-
-Coefficient scaled(Coefficient c, double factor) {
-  if (c.value) *c.value *= factor;
-  if (c.upper95) *c.upper95 *= factor;
-  c.ci95.low *= factor;
-  c.ci95.high *= factor;
-  return c;
-}
-
-TermDifference judged(const ComparedTerm& t, double share) {
-  if (t.a.status == Status::not_fitted || t.b.status == Status::not_fitted)
-    return TermDifference::only_one;
-  if (!relied_on(t.a) || !relied_on(t.b)) return TermDifference::not_judged;
-  if (t.p) {
-    if (!(*t.p < share)) return TermDifference::not_resolved;
-    return *t.ratio > 1 ? TermDifference::larger : TermDifference::smaller;
+void add_findings(const ReportedCharacterization& side,
+                  const std::string& channel,
+                  ComparedGroup::Candidate& out) {
+  for (const Finding& one : side.findings) {
+    if (one.subject != channel && one.subject != detail::kOfRecording) continue;
+    if (!touches_noise(one)) continue;
+    const bool known = std::any_of(out.findings.begin(), out.findings.end(), [&](const auto& f) {
+      return f.code == one.code;
+    });
+    if (!known) out.findings.push_back(one);
+    if (spoils(one)) out.takes_part = false;
   }
-  if (t.a.value && t.b.upper95)
-    return t.a.ci95.low > *t.b.upper95 ? TermDifference::smaller : TermDifference::not_resolved;
-  if (t.b.value && t.a.upper95)
-    return t.b.ci95.low > *t.a.upper95 ? TermDifference::larger : TermDifference::not_resolved;
-  return TermDifference::not_judged;
 }
 
-std::string of_values(const ComparedTerm& t) {
-  const std::string ratio = fmt::format("B is {} times A [{}, {}], {}",
-                                        number_text(*t.ratio),
-                                        number_text(t.ratio_ci95.low),
-                                        number_text(t.ratio_ci95.high),
-                                        probability_text(*t.p));
-  switch (t.difference) {
-    case TermDifference::larger:
-      return ratio + ": larger.";
-    case TermDifference::smaller:
-      return ratio + ": smaller.";
-    case TermDifference::not_resolved:
-      return ratio + ": no difference beyond chance.";
-    case TermDifference::not_judged:
-      return ratio + ": not judged.";
-    case TermDifference::only_one:
-      break;
+bool has_interval(const ReportedChannel& channel) {
+  return std::none_of(channel.term.begin(), channel.term.end(), [](const Coefficient& c) {
+    return c.value && c.ci95.low == *c.value && c.ci95.high == *c.value;
+  });
+}
+
+std::vector<AllanPoint> scaled_curve(const ReportedChannel& channel, double factor) {
+  std::vector<AllanPoint> out = channel.curve;
+  for (AllanPoint& point : out) {
+    point.deviation *= factor;
+    for (Interval* ends : {&point.ci68, &point.ci95}) {
+      ends->low *= factor;
+      ends->high *= factor;
+    }
   }
-  return ratio;
-}
-
-std::string of_limits(const ComparedTerm& t) {
-  if (!t.a.value && !t.b.value)
-    return "not detected in either: two limits say nothing of a difference.";
-  const std::string limited = t.a.value ? "B" : "A", valued = t.a.value ? "A" : "B";
-  if (t.difference == TermDifference::not_judged)
-    return fmt::format("not detected in {}: not judged.", limited);
-  return t.difference == TermDifference::not_resolved
-             ? fmt::format("not detected in {}, whose limit leaves room for the value of {}.",
-                           limited,
-                           valued)
-             : fmt::format(
-                   "not detected in {}, and the whole interval of {} is above its limit: {}.",
-                   limited,
-                   valued,
-                   t.difference == TermDifference::smaller ? "smaller" : "larger");
-}
-
-std::string doubt_about(const ComparedTerm& t) {
-  std::string out;
-  for (const auto& [side, c] : {std::pair('A', &t.a), std::pair('B', &t.b)})
-    if (!relied_on(*c) && c->status != Status::not_fitted)
-      out +=
-          fmt::format(" {} in {}.", c->status == Status::misfit ? "Misfit" : "Undetermined", side);
+  std::erase_if(out, [](const AllanPoint& p) { return !(p.deviation > 0); });
   return out;
 }
 
-void add_sentence(ComparedTerm& t) {
-  if (t.difference == TermDifference::only_one)
-    t.sentence = fmt::format("fitted in {} only.", t.a.status == Status::not_fitted ? "B" : "A");
-  else
-    t.sentence = (t.ratio ? of_values(t) : of_limits(t)) + doubt_about(t);
+/// At the averaging times of the first of them where all reach.
+std::vector<AllanPoint> curve_of_axes(const std::vector<std::vector<AllanPoint>>& axes) {
+  std::vector<AllanPoint> out;
+  for (const AllanPoint& point : axes[0]) {
+    std::vector<Coefficient> all;
+    for (const auto& axis : axes) all.push_back(detail::curve_at(axis, point.tau_s));
+    const Coefficient mean = detail::root_mean_square(all);
+    if (!mean.value) continue;
+    AllanPoint& made = out.emplace_back(point);
+    made.deviation = *mean.value;
+    made.ci95 = mean.status == Status::detected ? mean.ci95 : Interval{};
+    made.ci68 = {};
+  }
+  return out;
 }
 
-void remark_if(bool differ,
-               const std::string& what,
-               const std::string& a,
-               const std::string& b,
-               ComparedChannel& out) {
-  if (differ) out.remarks.push_back(fmt::format("{}: {} in A, {} in B.", what, a, b));
+/// The channels of one side as one candidate: one, or its axes.
+void add_candidate(const std::vector<ReportedCharacterization>& sides,
+                   const std::vector<PairedChannel>& axes,
+                   bool several,
+                   ComparedGroup& out) {
+  ComparedGroup::Candidate made;
+  made.side = axes[0].side;
+  const ReportedCharacterization& side = sides[made.side];
+  made.name = several ? side.name + " " + axes[0].channel->name : side.name;
+  if (several && sides.size() == 1) made.name = axes[0].channel->name;
+  std::vector<std::vector<AllanPoint>> curves;
+  for (const PairedChannel& one : axes) {
+    made.channels.push_back(one.channel->name);
+    made.measured = made.measured && has_interval(*one.channel);
+    add_findings(side, one.channel->name, made);
+    curves.push_back(scaled_curve(*one.channel, one.factor));
+  }
+  made.findings = worst_first(std::move(made.findings));
+  made.curve = curves.size() == 1 ? curves[0] : curve_of_axes(curves);
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    std::vector<Coefficient> all;
+    for (const PairedChannel& one : axes)
+      all.push_back(detail::scaled(one.channel->term[t], one.factor));
+    if (out.terms.size() <= t) out.terms.push_back({static_cast<Term>(t), {}, {}, {}, {}, {}});
+    out.terms[t].values.push_back(all.size() == 1 ? all[0] : detail::root_mean_square(all));
+  }
+  out.candidates.push_back(std::move(made));
 }
+
+bool is_fitted_in(const Coefficient& c) {
+  return c.status != Status::not_fitted;
+}
+
+/// An axis of another group that has all of its candidates.
+bool is_within(const ComparedGroup& group, const std::vector<ComparedGroup>& all) {
+  const auto holds = [&](const ComparedGroup& other) {
+    return other.of_axes && other.quantity == group.quantity &&
+           std::all_of(group.candidates.begin(), group.candidates.end(), [&](const auto& one) {
+             return std::any_of(other.candidates.begin(),
+                                other.candidates.end(),
+                                [&](const auto& c) { return c.side == one.side; });
+           });
+  };
+  return !group.of_axes && !group.axis.empty() && std::any_of(all.begin(), all.end(), holds);
+}
+
+std::vector<ComparedGroup> groups_of(const std::vector<ReportedCharacterization>& sides,
+                                     const std::vector<detail::ChannelPairs>& pairs) {
+  std::vector<ComparedGroup> out;
+  for (const detail::AxesTogether& one : detail::axes_together(pairs)) {
+    out.push_back(one.group);
+    for (const auto& axes : one.sides) add_candidate(sides, axes, false, out.back());
+  }
+  for (const detail::ChannelPairs& one : pairs) {
+    if (one.channels.size() < 2) continue;
+    out.push_back(one.group);
+    for (const PairedChannel& channel : one.channels) {
+      const auto same_side = [&](const PairedChannel& c) { return c.side == channel.side; };
+      add_candidate(sides,
+                    {channel},
+                    std::count_if(one.channels.begin(), one.channels.end(), same_side) > 1,
+                    out.back());
+    }
+  }
+  for (ComparedGroup& group : out) group.within = is_within(group, out);
+  for (ComparedGroup& group : out)
+    std::erase_if(group.terms, [](const ComparedTerm& t) {
+      return std::none_of(t.values.begin(), t.values.end(), is_fitted_in);
+    });
+  return out;
+}
+
+std::size_t judgements_of(const ComparedGroup& group) {
+  const std::size_t n = group.candidates.size();
+  return n * (n - 1) / 2 * (group.terms.size() + detail::octaves_of(group));
+}
+
+std::string terms_words(const ComparedGroup& group) {
+  std::vector<std::string> out;
+  for (const ComparedTerm& term : group.terms) {
+    if (!term.lowest.best || !term.values[*term.lowest.best].value) continue;
+    const auto letter = kTermNames[static_cast<std::size_t>(term.term)].letter;
+    const auto judged = std::count_if(term.values.begin(), term.values.end(), detail::relied_on);
+    if (judged < 2) continue;
+    std::vector<std::string> alike;
+    for (const std::size_t i : term.lowest.not_apart) alike.push_back(group.candidates[i].name);
+    const std::string& best = group.candidates[*term.lowest.best].name;
+    out.push_back(
+        alike.empty()
+            ? fmt::format("{}: {}", letter, best)
+            : fmt::format(
+                  "{}: {} or {}, not distinguished", letter, best, fmt::join(alike, " or ")));
+  }
+  return out.empty() ? "" : fmt::format("Lowest {}.", fmt::join(out, "; "));
+}
+
+void judge(ComparedGroup& group, double share) {
+  std::vector<bool> takes_part;
+  for (const ComparedGroup::Candidate& one : group.candidates) takes_part.push_back(one.takes_part);
+  for (ComparedTerm& term : group.terms) {
+    for (const Coefficient& c : term.values) {
+      term.ratios.push_back(detail::ratio_of(c, term.values[0]));
+      term.differences.push_back(detail::difference_of(c, term.values[0], share));
+    }
+    term.lowest = detail::lowest_of(term.values, takes_part, share);
+  }
+  detail::compare_times(group, share);
+  group.terms_sentence = terms_words(group);
+}
+
+/// Who is the lowest anywhere, in the order of the candidates.
+std::vector<std::size_t> winners_of(const ComparedGroup& group) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < group.candidates.size(); ++i) {
+    bool wins = false;
+    for (const ComparedGroup::Range& range : group.ranges)
+      wins = wins || (range.lowest.size() < group.candidates.size() &&
+                      std::count(range.lowest.begin(), range.lowest.end(), i) > 0);
+    for (const ComparedTerm& term : group.terms) wins = wins || term.lowest.best == i;
+    if (wins) out.push_back(i);
+  }
+  return out;
+}
+
+std::string titles_of(const std::vector<Finding>& findings) {
+  std::vector<std::string> out;
+  for (const Finding& one : findings) {
+    const FindingKind* const kind = find_finding_kind(one.code);
+    out.emplace_back(kind != nullptr ? std::string(kind->title) : one.code);
+    if (out.size() == 3) break;
+  }
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+/// What to know of those that lead, and who was left out.
+std::string warning_words(const ComparedGroup& group) {
+  std::string out;
+  for (const ComparedGroup::Candidate& one : group.candidates)
+    if (!one.takes_part)
+      out += fmt::format(" {} is left out: {}.", one.name, titles_of(one.findings));
+  for (const std::size_t i : winners_of(group)) {
+    const ComparedGroup::Candidate& one = group.candidates[i];
+    if (!one.measured) out += fmt::format(" {} is stated without intervals.", one.name);
+    if (!one.findings.empty())
+      out += fmt::format(" Check {} first: {}.", one.name, titles_of(one.findings));
+  }
+  return out;
+}
+
+/// Of several axes together where there are, else of each.
+std::string comparison_verdict(const CharacterizationComparison& c) {
+  std::string out;
+  for (const ComparedGroup& group : c.groups) {
+    if (group.within) continue;
+    std::string said = group.sentence;
+    for (const std::string& more : {group.terms_sentence, warning_words(group)})
+      if (!more.empty()) said += (said.empty() || more[0] == ' ' ? "" : " ") + more;
+    if (said.empty()) said = "no term and no averaging time is known of two.";
+    out += fmt::format("{}{}: {}", out.empty() ? "" : "\n", group.name, said);
+  }
+  return out.empty() ? "No channel is in both." : out;
+}
+
+// ---- what else differs ----
+
+class Remarks {
+ public:
+  void add(const std::string& channel, const std::string& remark) {
+    auto [place, made] = channels_.try_emplace(remark);
+    if (made) order_.push_back(remark);
+    place->second.push_back(channel);
+  }
+  std::vector<std::string> list() const {
+    std::vector<std::string> out;
+    for (const std::string& remark : order_)
+      out.push_back(fmt::format("{}: {}", fmt::join(channels_.at(remark), ", "), remark));
+    return out;
+  }
+
+ private:
+  std::map<std::string, std::vector<std::string>> channels_;
+  std::vector<std::string> order_;
+};
 
 std::string band_text(const ReportedChannel& c) {
   return c.band.whole ? "the whole spectrum"
@@ -136,117 +278,159 @@ std::string unit_or_none(const std::string& unit) {
   return unit.empty() ? "no unit" : unit;
 }
 
-void add_remarks(const ReportedChannel& a, const ReportedChannel& b, ComparedChannel& out) {
-  remark_if(a.unit != b.unit, "Unit", unit_or_none(a.unit), unit_or_none(b.unit), out);
+/// What differs between the first channel of a group and another.
+void add_remarks(const std::vector<ReportedCharacterization>& sides,
+                 const std::string& group,
+                 const PairedChannel& first,
+                 const PairedChannel& other,
+                 Remarks& out) {
+  const ReportedChannel &a = *first.channel, &b = *other.channel;
+  const bool one_side = first.side == other.side;
+  const std::string &in_a = one_side ? a.name : sides[first.side].name,
+                    &in_b = one_side ? b.name : sides[other.side].name;
+  const auto remark =
+      [&](bool differ, const char* what, const std::string& x, const std::string& y) {
+        if (differ) out.add(group, fmt::format("{} {} in {}, {} in {}.", what, x, in_a, y, in_b));
+      };
+  remark(a.unit != b.unit, "unit", unit_or_none(a.unit), unit_or_none(b.unit));
   if (!a.fitted || !b.fitted) {
-    out.remarks.push_back(fmt::format("Without a fit in {}.",
-                                      a.fitted   ? "B"
-                                      : b.fitted ? "A"
-                                                 : "both"));
+    for (const auto& [side, channel] : {std::pair{&in_a, &a}, std::pair{&in_b, &b}})
+      if (!channel->fitted) out.add(group, "without a fit in " + *side + ".");
     return;
   }
-  remark_if(std::abs(a.rate_hz - b.rate_hz) > 0.01 * a.rate_hz,
-            "Sampling rate, Hz",
-            brief_text(a.rate_hz, 6),
-            brief_text(b.rate_hz, 6),
-            out);
-  const bool bands =
-      a.band.whole != b.band.whole || std::abs(std::log(a.band.top_hz / b.band.top_hz)) > 0.4;
-  remark_if(bands, "Band of the fit", band_text(a), band_text(b), out);
-  remark_if(a.shape != b.shape, "Shape", a.shape, b.shape, out);
-  remark_if(a.events != b.events,
-            "Steps, warm-up and ramps taken out",
-            fmt::format("{}", a.events),
-            fmt::format("{}", b.events),
-            out);
+  remark(a.rate_hz > 0 && b.rate_hz > 0 && std::abs(a.rate_hz - b.rate_hz) > 0.01 * a.rate_hz,
+         "sampling rate in Hz",
+         brief_text(a.rate_hz, 6),
+         brief_text(b.rate_hz, 6));
+  const bool bands = a.band.whole != b.band.whole ||
+                     (!a.band.whole && std::abs(std::log(a.band.top_hz / b.band.top_hz)) > 0.4);
+  remark(bands, "band of the fit", band_text(a), band_text(b));
+  remark(a.shape != b.shape, "shape", a.shape, b.shape);
+  remark(a.events != b.events,
+         "steps, warm-up and ramps taken out:",
+         fmt::format("{}", a.events),
+         fmt::format("{}", b.events));
 }
 
-/// What values of B are multiplied by to be in the unit of A; none: they cannot be compared.
-std::optional<double> unit_factor(const std::string& a, const std::string& b) {
-  if (a == b) return 1.0;
-  const auto one = find_unit(a), other = find_unit(b);
-  if (!one || !other || one->quantity != other->quantity) return std::nullopt;
-  return other->to_si / one->to_si;
+std::vector<std::string> remarks_of(const std::vector<ReportedCharacterization>& sides,
+                                    const std::vector<detail::ChannelPairs>& pairs) {
+  Remarks out;
+  for (const detail::ChannelPairs& one : pairs) {
+    const PairedChannel& first = one.channels[0];
+    if (one.channels.size() == 1 && sides.size() > 1)
+      out.add(first.channel->name,
+              fmt::format("only in {} ({}).",
+                          sides[first.side].name,
+                          one.group.quantity.empty() ? unit_or_none(first.channel->unit)
+                                                     : first.channel->unit));
+    for (std::size_t i = 1; i < one.channels.size(); ++i)
+      add_remarks(sides, one.group.name, first, one.channels[i], out);
+  }
+  return out.list();
 }
 
-ComparedChannel compared_channel(const ReportedChannel& a, const ReportedChannel& b) {
-  ComparedChannel out;
-  out.name = a.name;
-  out.unit = a.unit;
-  add_remarks(a, b, out);
-  const auto factor = unit_factor(a.unit, b.unit);
-  if (!factor) out.remarks.push_back("Unlike quantities are not compared.");
-  if (!factor || !a.fitted || !b.fitted) return out;
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    ComparedTerm term;
-    term.term = static_cast<Term>(t);
-    term.a = a.term[t];
-    term.b = scaled(b.term[t], *factor);
-    if (term.a.status == Status::not_fitted && term.b.status == Status::not_fitted) continue;
-    if (term.a.value && term.b.value && *term.a.value > 0 && *term.b.value > 0)
-      compare_values(term);
-    out.terms.push_back(std::move(term));
+/// "NAME, gyro_x, gyro_y: caution: SENTENCE", at most five of each side, of the channels that are wanted.
+std::vector<std::string> known_of(const std::vector<ReportedCharacterization>& sides,
+                                  const std::vector<std::string>& wanted) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> out;
+  for (const ReportedCharacterization& side : sides) {
+    std::vector<std::pair<std::string, std::string>> said;  // subjects, and what is said of them
+    for (const Finding& one : side.findings) {
+      const ReportedChannel* const channel = side.find(one.subject);
+      if (channel != nullptr && !detail::is_chosen(*channel, wanted)) continue;
+      const std::string sentence = fmt::format("{}: {}", name_of(one.severity), with_help(one));
+      const auto same = std::find_if(
+          said.begin(), said.end(), [&](const auto& other) { return other.second == sentence; });
+      if (same == said.end())
+        said.emplace_back(one.subject, sentence);
+      else
+        same->first += ", " + one.subject;
+    }
+    for (std::size_t i = 0; i < std::min(kMost, said.size()); ++i)
+      out.push_back(fmt::format("{}, {}: {}", side.name, said[i].first, said[i].second));
+    if (said.size() > kMost)
+      out.push_back(fmt::format("{}: and {} more", side.name, said.size() - kMost));
   }
   return out;
 }
 
-std::string comparison_verdict(const CharacterizationComparison& comparison) {
-  std::size_t both = 0, judged = 0, open = 0;
-  std::vector<std::string> differ;
-  for (const ComparedChannel& c : comparison.channels) {
-    both += c.in_a && c.in_b ? 1 : 0;
-    for (const ComparedTerm& t : c.terms) {
-      const bool is_open =
-          t.difference == TermDifference::not_judged || t.difference == TermDifference::only_one;
-      (is_open ? open : judged) += 1;
-      if (t.difference != TermDifference::larger && t.difference != TermDifference::smaller)
-        continue;
-      std::string title = term_title(t.term);
-      title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
-      differ.push_back(fmt::format("{} of {} is {}", title, c.name, name_of(t.difference)));
+void set_names(std::vector<ReportedCharacterization>& sides,
+               const std::vector<std::string>& wanted) {
+  std::vector<std::string> names, files;
+  for (const ReportedCharacterization& side : sides) {
+    names.push_back(side.name);
+    files.push_back(side.file);
+  }
+  detail::set_names_apart(names, files);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (i < wanted.size() && !wanted[i].empty()) names[i] = wanted[i];
+    const auto before =
+        std::count(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]);
+    sides[i].name = before > 0 ? fmt::format("{} ({})", names[i], before + 1) : names[i];
+  }
+}
+
+/// What the sides measure, where they have nothing in common.
+void refuse_unlike(const std::vector<ReportedCharacterization>& sides,
+                   const std::vector<detail::ChannelPairs>& pairs) {
+  if (std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.channels.size() > 1; }))
+    return;
+  if (std::any_of(sides.begin(), sides.end(), [](const auto& s) { return s.channels.empty(); }))
+    return;
+  std::vector<std::string> measured;
+  for (const ReportedCharacterization& side : sides) {
+    const ReportedChannel& c = side.channels[0];
+    measured.push_back(fmt::format("{} of {} is in {}", c.name, side.name, unit_or_none(c.unit)));
+  }
+  throw input_error("E0976")
+      .says("no two channels measure the same: {}", fmt::join(measured, ", "))
+      .hint(
+          "two recordings of one quantity and axis at least; `units` says the unit where a log "
+          "does not");
+}
+
+void add_limits(CharacterizationComparison& out, const NoiseLimits& limits) {
+  std::vector<NamedChannel> named;
+  for (const ComparedGroup& group : out.groups)
+    named.push_back({group.candidates[0].channels[0], group.unit});
+  for (const ChannelLimit& limit : limits_for(limits, named)) {
+    ComparedGroup& group = out.groups[limit.channel];
+    for (ComparedTerm& term : group.terms)
+      if (term.term == limit.term) term.limit = limit.most;
+  }
+  for (ComparedGroup& group : out.groups) {
+    Mixture theta{};
+    for (const ComparedTerm& term : group.terms)
+      theta[static_cast<std::size_t>(term.term)] = std::pow(term.limit.value_or(0), 2);
+    for (const ComparedGroup::Time& time : group.times) {
+      const double variance = allan_variance(theta, 1000, time.tau_s / 1000);
+      if (!(variance > 0)) continue;
+      group.limit_tau_s.push_back(time.tau_s);
+      group.limit_curve.push_back(std::sqrt(variance));
     }
   }
-  if (both == 0) return "No channel is in both.";
-  if (judged == 0) return "No term is known in both well enough to be compared.";
-  std::string out =
-      differ.empty()
-          ? fmt::format("No difference beyond chance in {} term{}.", judged, judged == 1 ? "" : "s")
-          : fmt::format("{} of {} terms differ beyond chance: in B {}.",
-                        differ.size(),
-                        judged,
-                        fmt::join(differ, ", "));
-  if (open > 0) out += fmt::format(" {} could not be judged.", open);
-  return out;
 }
 
 }  // namespace
 
 CharacterizationComparison compare_characterizations(
-    ReportedCharacterization a,
-    ReportedCharacterization b,
-    const CharacterizationCompareOptions& options) {
+    std::vector<ReportedCharacterization> sides, const CharacterizationCompareOptions& options) {
   CharacterizationComparison out;
-  out.a = std::move(a);
-  out.b = std::move(b);
-  for (const ReportedChannel& one : out.a.channels) {
-    const ReportedChannel* const other = out.b.find(one.name);
-    if (other != nullptr)
-      out.channels.push_back(compared_channel(one, *other));
-    else
-      out.channels.push_back({one.name, one.unit, true, false, {}, {}});
-  }
-  for (const ReportedChannel& one : out.b.channels)
-    if (out.a.find(one.name) == nullptr)
-      out.channels.push_back({one.name, one.unit, false, true, {}, {}});
+  out.sides = std::move(sides);
+  out.probability = options.probability;
+  set_names(out.sides, options.names);
+  const std::vector<detail::ChannelPairs> pairs =
+      detail::paired_channels(out.sides, options.channels);
+  refuse_unlike(out.sides, pairs);
+  out.groups = groups_of(out.sides, pairs);
   std::size_t judgements = 0;
-  for (const ComparedChannel& c : out.channels) judgements += c.terms.size();
-  const double share =
-      options.probability / static_cast<double>(std::max<std::size_t>(1, judgements));
-  for (ComparedChannel& c : out.channels)
-    for (ComparedTerm& t : c.terms) {
-      t.difference = judged(t, share);
-      add_sentence(t);
-    }
+  for (const ComparedGroup& group : out.groups) judgements += judgements_of(group);
+  for (ComparedGroup& group : out.groups)
+    judge(group, options.probability / static_cast<double>(std::max<std::size_t>(1, judgements)));
+  if (options.limits) add_limits(out, *options.limits);
+  out.remarks = remarks_of(out.sides, pairs);
+  out.known = known_of(out.sides, options.channels);
   out.verdict = comparison_verdict(out);
   return out;
 }

@@ -3,16 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "libchar/characterize/compare/reported_findings.hpp"
+#include "libchar/characterize/curves/curve_document.hpp"
+#include "libchar/characterize/curves/sensor_model_curve.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/document/schema.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
+#include "libchar/model/foreign_models.hpp"
+#include "libchar/model/model_file.hpp"
 
 namespace libchar {
 namespace {
@@ -23,15 +29,6 @@ std::string format_of(const Document& document) {
   const DocumentEntry* const format =
       document.kind == Document::Kind::map ? document.find("format") : nullptr;
   return format != nullptr && format->value.kind == Document::Kind::text ? format->value.text : "";
-}
-
-/// "" where it cannot be read.
-std::string format_in(const std::string& file) {
-  try {
-    return format_of(parse_json_document(read_document_text(file), file));
-  } catch (const Error&) {
-    return "";
-  }
 }
 
 bool is_known(const std::string& format) {
@@ -72,9 +69,33 @@ std::string recording_of(const MapReader& map) {
   return input.size() == 1 ? first : fmt::format("{} and {} more", first, input.size() - 1);
 }
 
+/// Intervals of the Allan family hold for its own statistics only: others are not compared with them.
+bool is_compared(const std::string& statistic) {
+  return statistic.empty() || statistic == "oadev" || statistic == "adev" ||
+         statistic == "totdev" || statistic == "oavar" || statistic == "avar";
+}
+
+ReportedChannel& channel_of(ReportedCharacterization& out,
+                            const std::string& name,
+                            const std::string& unit) {
+  for (ReportedChannel& c : out.channels)
+    if (c.name == name) return c;
+  ReportedChannel& made = out.channels.emplace_back();
+  made.name = name;
+  made.unit = unit;
+  return made;
+}
+
+void read_curves(const MapReader& allan, ReportedCharacterization& out) {
+  const AllanDocument read = read_allan(allan);
+  for (const AllanOfChannel& one : read.channels)
+    if (is_compared(one.type.empty() ? read.type : one.type) && one.value_unit.empty())
+      channel_of(out, one.name, one.unit).curve = one.curve.points;
+}
+
 ReportedCharacterization read_summary(const Document& document, const std::string& file) {
   const std::string format = format_of(document);
-  if (!is_known(format))
+  if (!is_known(format) && format != "allan")
     throw input_error("E0771", file)
         .says(
             "expected the report of a characterization (format characterization, pooled-runs or "
@@ -84,25 +105,126 @@ ReportedCharacterization read_summary(const Document& document, const std::strin
   check_format(document, file, format, 1);
   ReportedCharacterization out;
   out.file = file;
+  out.name = detail::document_name(file);
   out.format = format;
   const MapReader map(document, file, "");
   if (map.has("tool")) out.program = map.map("tool").text_or("version", "");
   out.recording = recording_of(map);
+  out.findings = detail::reported_findings(map);
+  if (format == "allan") {
+    read_curves(map, out);
+    return out;
+  }
   const MapReader fit = format == "noise-fit" ? map : map.map("fit");
   for (const MapReader& one : fit.maps("channels")) {
     out.channels.push_back(read_channel(one));
     if (out.find(out.channels.back().name) != &out.channels.back())
       fit.refuse("channels", "two channels have one name: " + out.channels.back().name);
   }
-  out.findings = detail::reported_findings(map);
+  if (map.has("allan")) read_curves(map.map("allan"), out);
+  return out;
+}
+
+bool ends_like_a_document(const std::string& path) {
+  return path.ends_with(".json") || path.ends_with(".yaml") || path.ends_with(".yml");
+}
+
+ReportedCharacterization read_curve_candidate(const std::string& file) {
+  ReportedCharacterization out;
+  out.file = file;
+  out.name = detail::document_name(file);
+  out.format = "curve";
+  const auto table = read_curve_table(file, true);
+  for (const NamedCurve& named : table ? table->curves : std::vector<NamedCurve>{}) {
+    if (!is_compared(named.kind)) continue;
+    ReportedChannel& channel = channel_of(out, named.name, named.unit);
+    for (std::size_t i = 0; i < named.curve.x.size(); ++i) {
+      AllanPoint& point = channel.curve.emplace_back();
+      point.tau_s = named.curve.x[i];
+      point.deviation = named.curve.root ? named.curve.y[i] : std::sqrt(named.curve.y[i]);
+      if (i < named.low95.size()) point.ci95 = {named.low95[i], named.high95[i]};
+    }
+  }
   return out;
 }
 
 }  // namespace
 
-const ReportedChannel* ReportedCharacterization::find(std::string_view name) const {
+namespace detail {
+
+std::string document_name(const std::string& path) {
+  const std::filesystem::path file(path);
+  const std::string stem = file.stem().string();
+  const std::string folder = file.parent_path().filename().string();
+  const bool plain = stem == "report" || stem == "runs" || stem == "curves";
+  if (plain && !folder.empty() && folder != "." && folder != "..") return folder;
+  return stem.ends_with(".sensor") ? stem.substr(0, stem.size() - 7) : stem;
+}
+
+void set_names_apart(std::vector<std::string>& names, const std::vector<std::string>& files) {
+  const std::vector<std::string> all = names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    bool alike = false;
+    for (std::size_t j = 0; j < all.size(); ++j)
+      alike = alike || (all[j] == all[i] && files[j] != files[i]);
+    if (!alike) continue;
+    const std::filesystem::path file(files[i]);
+    const std::string folder = file.parent_path().filename().string();
+    names[i] = folder.empty() || folder == all[i] ? file.string() : folder + "/" + all[i];
+  }
+}
+
+ReportedCharacterization reported_models(const std::vector<SensorModel>& models,
+                                         const std::string& path) {
+  ReportedCharacterization out;
+  out.file = path;
+  out.name = detail::document_name(path);
+  out.format = "sensor-model";
+  for (const SensorModel& model : models) {
+    ReportedChannel& channel = channel_of(out, model.channel, model.unit);
+    channel.fitted = true;
+    channel.term = model.noise;
+    // A value that is stated without an interval is taken as it is.
+    for (Coefficient& c : channel.term)
+      if (c.value && !(c.ci95.high > 0)) c.ci95 = {*c.value, *c.value};
+    channel.p = kNone;
+    channel.rate_hz = model.rate_hz;
+    channel.duration_s = model.duration_s;
+    channel.band.whole = true;
+    channel.events = model.deterministic.size();
+    channel.shape = name_of(model.noise_shape.kind);
+    if (model.noise_shape.taps > 0) channel.shape += fmt::format(" of {}", model.noise_shape.taps);
+    channel.curve = sensor_model_curve(model, sensor_model_fit(model)).points;
+    if (out.recording.empty()) out.recording = model.recording.file;
+    for (Finding one : model.findings) {
+      one.subject = model.channel;
+      if (one.severity != Severity::note) out.findings.push_back(std::move(one));
+    }
+  }
+  return out;
+}
+
+bool is_recording(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return std::filesystem::exists(std::filesystem::path(path) / "metadata.yaml", ignored);
+  return !ends_like_a_document(path) && curve_in_header(path).empty();
+}
+
+std::string document_format(const std::string& path) {
+  try {
+    const std::string file = report_file(path);
+    return format_of(parse_json_document(read_document_text(file), file));
+  } catch (const Error&) {
+    return "";
+  }
+}
+
+}  // namespace detail
+
+const ReportedChannel* ReportedCharacterization::find(std::string_view channel) const {
   for (const ReportedChannel& c : channels)
-    if (c.name == name) return &c;
+    if (c.name == channel) return &c;
   return nullptr;
 }
 
@@ -116,16 +238,12 @@ std::string report_file(const std::string& path) {
   return (folder / (pooled ? "runs.json" : "report.json")).string();
 }
 
-bool is_characterization_report(const std::string& path) {
-  return is_known(format_in(report_file(path)));
-}
-
 void refuse_lot_report(const std::string& path, const std::string& instead) {
   std::error_code ignored;
   std::string file = report_file(path);
   if (!std::filesystem::exists(file, ignored))
     file = (std::filesystem::path(path) / "lot.json").string();
-  if (format_in(file) == "lot")
+  if (detail::document_format(file) == "lot")
     throw input_error("E0771", file)
         .says("this is the report of a lot of devices")
         .got("lot")
@@ -139,7 +257,11 @@ ReportedCharacterization parse_characterization_report(std::string_view text,
 
 ReportedCharacterization read_characterization_report(const std::string& path) {
   const std::string file = report_file(path);
-  return parse_characterization_report(read_document_text(file), file);
+  if (!ends_like_a_document(file)) return read_curve_candidate(file);
+  const std::string text = read_document_text(file);
+  const Document document = parse_document(text, file);
+  if (detail::holds_models(document)) return detail::reported_models(read_model_list(file), file);
+  return read_summary(document, file);
 }
 
 }  // namespace libchar

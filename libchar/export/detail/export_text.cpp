@@ -25,7 +25,7 @@ struct Source {
 std::vector<Source> sources(const SensorGroup& group) {
   std::vector<Source> out;
   for (const SensorModel* m : group.all) {
-    const Source source{m->recording_file, m->recording_sha256};
+    const Source source{m->recording.file, m->recording.sha256};
     const bool known = std::any_of(out.begin(), out.end(), [&](const Source& s) {
       return s.sha256 == source.sha256 && s.file == source.file;
     });
@@ -39,7 +39,7 @@ std::string said(const Source& source, const SensorGroup& group) {
     return fmt::format(
         "{} sha256:{}", source.file.empty() ? "a recording" : source.file, source.sha256);
   for (const SensorModel* m : group.all)
-    if (m->recording_sha256.empty() && !m->obtained.empty()) return m->obtained + " (no recording)";
+    if (m->recording.sha256.empty() && !m->obtained.empty()) return m->obtained + " (no recording)";
   return "no recording";
 }
 
@@ -155,13 +155,18 @@ std::string yaml_line(std::string_view key,
       "{}: {}  # {}{}{}\n", key, export_number(value), unit, origin.empty() ? "" : "; ", origin);
 }
 
-std::string density_lines(const ImuFigures& f, std::string_view indent) {
+std::string row_lines(std::string_view target, const ImuFigures& f, std::string_view indent) {
   std::string out;
   for (const char* sensor : {"accelerometer", "gyroscope"})
-    for (const ConsumerRow* row : rows_of("kalibr", sensor)) {
+    for (const ConsumerRow* row : rows_of(target, sensor)) {
       const ExportFigure& figure = figure_of(f, sensor, row->term);
+      const double rate_hz =
+          std::string_view(sensor) == "gyroscope" ? f.gyroscope_rate_hz : f.accelerometer_rate_hz;
       out += indent;
-      out += yaml_line(row->key, row_value(*row, *figure.value), file_unit(*row), figure.origin);
+      out += yaml_line(row->key,
+                       row_value(*row, *figure.value, {.rate_hz = rate_hz}),
+                       file_unit(*row),
+                       figure.origin);
     }
   return out;
 }
@@ -211,7 +216,11 @@ void note_figure(std::vector<std::string>& notes,
     notes.push_back(fmt::format("{}: {}", key, figure.origin));
 }
 
-std::string topic_scalar(const std::string& topic) {
+std::string topic_scalar(const SensorGroup& group, const ExportOptions& options) {
+  std::string topic = options.topic;
+  for (const SensorModel* m : group.all)
+    if (topic.empty()) topic = m->recording.topic;
+  if (topic.empty()) topic = "/imu0";
   const auto allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '~';
   };

@@ -43,8 +43,10 @@ std::string yaml_line(std::string_view key,
                       std::string_view unit,
                       const std::string& origin);
 
-/// The four keys that Kalibr, EuRoC files and OpenVINS share, each line behind `indent`.
-std::string density_lines(const ImuFigures& figures, std::string_view indent = "");
+/// The four numbers of a target as YAML, each line behind `indent`.
+std::string row_lines(std::string_view target,
+                      const ImuFigures& figures,
+                      std::string_view indent = "");
 
 /// What has to be said of three axes: once if it is the same, else axis by axis.
 std::string axis_origins(const std::array<std::string, 3>& origins);
@@ -66,8 +68,8 @@ BiasOfAxes bias_of_axes(const SensorTriad& triad,
 /// Puts down what was replaced or left out of `figure` under its key.
 void note_figure(std::vector<std::string>& notes, std::string_view key, const ExportFigure& figure);
 
-/// The topic as a YAML scalar that every reader takes for text. Throws Error(usage) unless it is
-/// made of letters, digits, '_', '/', '~' and does not start with a digit.
-std::string topic_scalar(const std::string& topic);
+/// The topic that the options say, or that of the recording, as a YAML scalar that every reader takes for text. Throws
+/// Error(usage) unless it is made of letters, digits, '_', '/', '~' and does not start with a digit.
+std::string topic_scalar(const SensorGroup& group, const ExportOptions& options);
 
 }  // namespace libchar

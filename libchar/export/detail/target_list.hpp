@@ -12,6 +12,11 @@
   TARGET(orbslam3) \
   TARGET(basalt) \
   TARGET(vins) \
+  TARGET(okvis) \
+  TARGET(rovio) \
+  TARGET(maplab) \
+  TARGET(lio_sam) \
+  TARGET(fast_lio) \
   TARGET(gtsam) \
   TARGET(ros) \
   TARGET(sdf) \
@@ -19,6 +24,8 @@
   TARGET(airsim) \
   TARGET(gnss_ins_sim) \
   TARGET(pegasus) \
+  TARGET(carla) \
+  TARGET(mujoco) \
   TARGET(kf_gins) \
   TARGET(navego) \
   TARGET(matlab) \

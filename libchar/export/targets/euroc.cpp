@@ -25,7 +25,7 @@ Export write_euroc(const SensorGroup& group, const ExportOptions& options) {
       "         0.0, 0.0, 1.0, 0.0,\n"
       "         0.0, 0.0, 0.0, 1.0]\n";
   out.text += yaml_line("rate_hz", f.gyroscope_rate_hz, "Hz", "");
-  out.text += density_lines(f);
+  out.text += row_lines("kalibr", f);
   out.notes.emplace_back(
       "T_BS is the identity: a recording at rest does not say where the sensor sits");
   return out;

@@ -17,9 +17,9 @@ Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
                                   "density = white_noise, walk = random_walk (roots of two-sided, "
                                   "continuous densities; Kalibr makes them discrete itself)"),
                        "# ");
-  out.text += "rostopic: " + topic_scalar(options.topic) + "\n";
+  out.text += "rostopic: " + topic_scalar(group, options) + "\n";
   out.text += yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
-  out.text += density_lines(f);
+  out.text += row_lines("kalibr", f);
   return out;
 }
 

@@ -32,8 +32,8 @@ Export write_openvins(const SensorGroup& group, const ExportOptions& options) {
                         "# ");
   out.text += "imu0:\n";
   out.text += matrix("T_i_b", 4, true, "");
-  out.text += density_lines(f, "  ");
-  out.text += "  rostopic: " + topic_scalar(options.topic) + "\n  time_offset: 0.0\n";
+  out.text += row_lines("kalibr", f, "  ");
+  out.text += "  rostopic: " + topic_scalar(group, options) + "\n  time_offset: 0.0\n";
   out.text += "  " + yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
   out.text += "  model: \"kalibr\"\n";
   out.text +=

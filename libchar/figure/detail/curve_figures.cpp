@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "libchar/characterize/compare/paired_channels.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
@@ -41,6 +42,14 @@ std::string told_apart(const std::string& source,
   return many_channels ? source + ": " + channel : source;
 }
 
+template <class Part>
+std::string usual_name(const Part& part) {
+  if constexpr (requires { part.unit; })
+    return detail::usual_channel_name(part.channel, part.unit);
+  else
+    return part.channel;
+}
+
 template <class Part, class Usable>
 std::vector<std::pair<const Part*, std::string>> chosen_parts(
     std::span<const FigureSource> sources,
@@ -53,10 +62,13 @@ std::vector<std::pair<const Part*, std::string>> chosen_parts(
   for (std::size_t s = 0; s < sources.size(); ++s)
     for (const Part& part : sources[s].*parts) {
       if (!usable(part)) continue;
+      const std::string usual = usual_name(part);
       all.push_back(part.channel);
-      if (!is_wanted(options.channels, part.channel)) continue;
+      if (usual != part.channel) all.push_back(usual);
+      if (!is_wanted(options.channels, part.channel) && !is_wanted(options.channels, usual))
+        continue;
       found.emplace_back(&part, s);
-      channels.insert(part.channel);
+      channels.insert(sources.size() > 1 ? usual : part.channel);
     }
   if (!all.empty()) refuse_unmatched(options.channels, all, sources[0].file);
   std::set<std::size_t> used;

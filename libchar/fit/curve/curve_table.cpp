@@ -233,7 +233,12 @@ std::string curve_in_header(const std::string& path) {
   }
   if (!find(header, {"frequency_hz", "frequency", "freq"})) return "";
   const Columns c = columns_of(header, false);
-  return c.root || c.power ? "psd" : "";
+  // A column NAME[UNIT] for each channel, as psd prints them.
+  const bool wide = header.size() > 1 && header[0].text == "frequency_hz" &&
+                    std::all_of(header.begin() + 1, header.end(), [](const TextCell& cell) {
+                      return cell.text.ends_with(']');
+                    });
+  return c.root || c.power || wide ? "psd" : "";
 }
 
 }  // namespace libchar

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "libchar/characterize/compare/characterization_comparison.hpp"
 #include "libchar/core/document/json.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/lot/lot_comparison.hpp"
@@ -25,14 +24,6 @@ std::string comparison_markdown(const Comparison& comparison);
 /// Why an algorithm has no change, as far as the reports say: "only in A", "skipped in B"; empty
 /// when it ran in both.
 std::string side_of(const ComparedAlgorithm& row);
-
-// Two characterizations side by side, for scripts, pages and a terminal.
-
-/// The keys behind the head of {"format":"characterization-comparison","version":1,…} (docs/recordings.md).
-Json comparison_json(const CharacterizationComparison& comparison);
-std::string comparison_text(const CharacterizationComparison& comparison, std::size_t width = 0);
-/// One page of Markdown.
-std::string comparison_markdown(const CharacterizationComparison& comparison);
 
 // Two lots side by side, for scripts and a terminal.
 

@@ -154,9 +154,9 @@ SensorModel model_of(const RunsReport& report, const PooledChannel& c) {
   SensorModel model = sensor_model_from(pooled, report.runs[c.runs[0].run].log);
   model.obtained = fmt::format("fit of {} recordings together", c.runs.size());
   // One hash is that of one file.
-  model.recording_file =
+  model.recording.file =
       fmt::format("{} and {} more", report.pooled->runs[c.runs[0].run].file, c.runs.size() - 1);
-  model.recording_sha256.clear();
+  model.recording.sha256.clear();
   for (const ChannelRun& run : c.runs)
     model.remarks.push_back("run: " + report.pooled->runs[run.run].file);
   if (c.bias && c.bias->spread_ci95.low > 0) model.bias.spread = c.bias->spread;

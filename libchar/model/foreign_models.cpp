@@ -1,0 +1,132 @@
+// Kalibr: continuous densities in SI units, one for three axes, with update_rate and rostopic, at the top or below
+// imu0. imu_utils of 2018: gyr_n, acc_n are sqrt(f) times the Allan deviation at 1 s, that of a sample; gyr_w, acc_w
+// are the lowest Allan deviation, which is the floor of bias instability and no random walk (gaowenliang/imu_utils,
+// src/fitallan_gyr.cpp). A fork writes N and K under the same keys. The file says neither which nor f: a line has to.
+#include "libchar/model/foreign_models.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "libchar/core/document/schema.hpp"
+#include "libchar/core/refusal.hpp"
+
+namespace libchar::detail {
+namespace {
+
+const Document* below(const Document& document, std::string_view key) {
+  const DocumentEntry* const entry =
+      document.kind == Document::Kind::map ? document.find(std::string(key)) : nullptr;
+  return entry == nullptr ? nullptr : &entry->value;
+}
+
+const Document* kalibr_part(const Document& document) {
+  for (const Document* part : {&document, below(document, "imu0")})
+    if (part != nullptr && (below(*part, "gyroscope_noise_density") != nullptr ||
+                            below(*part, "accelerometer_noise_density") != nullptr))
+      return part;
+  return nullptr;
+}
+
+bool is_of_imu_utils(const Document& document) {
+  const Document *gyr = below(document, "Gyr"), *acc = below(document, "Acc");
+  return (gyr != nullptr && below(*gyr, "avg-axis") != nullptr) ||
+         (acc != nullptr && below(*acc, "avg-axis") != nullptr);
+}
+
+Coefficient given(double value) {
+  Coefficient out;
+  out.status = Status::given;
+  out.value = value;
+  return out;
+}
+
+SensorModel stated(const std::string& channel,
+                   bool gyroscope,
+                   const std::string& program,
+                   const std::string& file) {
+  SensorModel out;
+  out.channel = channel;
+  out.unit = gyroscope ? "rad/s" : "m/s²";
+  out.kind = gyroscope ? "gyroscope" : "accelerometer";
+  out.obtained = program + " (" + file + ")";
+  return out;
+}
+
+std::vector<SensorModel> of_kalibr(const MapReader& at, const std::string& file) {
+  std::vector<SensorModel> out;
+  for (const char* sensor : {"gyroscope", "accelerometer"}) {
+    const std::string name = sensor;
+    if (!at.has(name + "_noise_density")) continue;
+    SensorModel& model = out.emplace_back(stated(name, name == "gyroscope", "Kalibr's file", file));
+    model.rate_hz = at.number_or("update_rate", 0);
+    model.recording.topic = at.text_or("rostopic", "");
+    model.noise[0] = given(at.number(name + "_noise_density"));
+    if (at.has(name + "_random_walk"))
+      model.noise[static_cast<std::size_t>(Term::walk)] = given(at.number(name + "_random_walk"));
+  }
+  return out;
+}
+
+/// The lowest Allan deviation of bias instability B is B sqrt(2 ln 2 / pi).
+double instability_of_floor(double floor) {
+  return floor / std::sqrt(2 * std::numbers::ln2 / std::numbers::pi);
+}
+
+std::vector<SensorModel> of_imu_utils(const MapReader& at, const std::string& file) {
+  const bool densities = at.has("densities");
+  if (densities == at.has("rate_hz"))
+    throw input_error("E0588", file)
+        .says(
+            "versions of imu_utils write different numbers under one name, and the file does not "
+            "say which")
+        .hint(
+            "add a line rate_hz: 200 (the rate) where gyr_n is the noise of a sample, as the "
+            "version of "
+            "2018 writes it, or densities: true for the fork that writes densities");
+  const double rate_hz = at.number_or("rate_hz", 0), root = densities ? 1 : std::sqrt(rate_hz);
+  std::vector<SensorModel> out;
+  for (const auto& [part, key] : {std::pair{"Gyr", "gyr"}, std::pair{"Acc", "acc"}}) {
+    if (!at.has(part)) continue;
+    const MapReader sensor = at.map(part);
+    for (const char* axis : {"x", "y", "z"}) {
+      const std::string name = std::string(axis) + "-axis";
+      if (!sensor.has(name)) continue;
+      const MapReader one = sensor.map(name);
+      SensorModel& model =
+          out.emplace_back(stated(std::string(key) + "_" + axis, *part == 'G', "imu_utils", file));
+      model.axis = axis;
+      model.rate_hz = rate_hz;
+      model.noise[0] = given(one.number(std::string(key) + "_n") / root);
+      const double slow = one.number(std::string(key) + "_w");
+      if (densities) {
+        model.noise[static_cast<std::size_t>(Term::walk)] = given(slow);
+        continue;
+      }
+      model.noise[static_cast<std::size_t>(Term::flicker)] = given(instability_of_floor(slow));
+      model.remarks.push_back(std::string(key) +
+                              "_w is the lowest Allan deviation: read as bias instability, not as "
+                              "a random walk");
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+bool holds_models(const Document& document) {
+  if (document.kind == Document::Kind::list) return true;
+  const Document* const format = below(document, "format");
+  if (format != nullptr && format->kind == Document::Kind::text)
+    return format->text == "sensor-model" || format->text == "sensor-models";
+  return kalibr_part(document) != nullptr || is_of_imu_utils(document);
+}
+
+std::vector<SensorModel> foreign_models(const Document& document, const std::string& file) {
+  if (below(document, "format") != nullptr) return {};
+  if (const Document* const part = kalibr_part(document))
+    return of_kalibr(MapReader(*part, file, ""), file);
+  if (is_of_imu_utils(document)) return of_imu_utils(MapReader(document, file, ""), file);
+  return {};
+}
+
+}  // namespace libchar::detail
