@@ -19,6 +19,7 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/lot_statistics.hpp"
+#include "libchar/lot/detail/statistics/device_outliers.hpp"
 
 namespace libchar {
 namespace {
@@ -78,20 +79,103 @@ void add_outliers(const Fleet& fleet, double probability, Statistic& s) {
   for (const Outlier& one : found) s.lot.outliers.push_back(outlier_of(fleet, s, one, others));
 }
 
+/// A quantity of all channels of a kind, device by device: those that count in all of the channels that count in two
+/// thirds of them.
+struct DeviceTable {
+  std::vector<std::string> channels;
+  std::vector<std::uint32_t> member;  ///< of the group: the first channel of each device
+  std::vector<double> y, v;
+};
+
+DeviceTable device_table(const Fleet& fleet, const Statistic& s) {
+  const auto name = [&](std::size_t i) -> const std::string& {
+    const LotPlace place = place_of(*s.group, s.values.member[i]);
+    return fleet.records[place.recording].channels[place.channel].name;
+  };
+  std::map<std::string, std::size_t> counted;
+  std::set<std::uint32_t> devices;
+  for (std::size_t i = 0; i < s.values.member.size(); ++i) {
+    ++counted[name(i)];
+    devices.insert(s.group->devices[s.values.member[i]]);
+  }
+  DeviceTable out;
+  for (const auto& [channel, count] : counted)
+    if (enough_count(count, devices.size())) out.channels.push_back(channel);
+  for (std::size_t i = 0; i < s.values.member.size();) {
+    const std::uint32_t device = s.group->devices[s.values.member[i]], first = s.values.member[i];
+    const std::size_t had = out.y.size();
+    for (; i < s.values.member.size() && s.group->devices[s.values.member[i]] == device; ++i) {
+      if (!std::binary_search(out.channels.begin(), out.channels.end(), name(i))) continue;
+      out.y.push_back(s.values.y[i]);
+      out.v.push_back(s.values.v[i]);
+    }
+    const bool whole = out.y.size() - had == out.channels.size();
+    if (whole) out.member.push_back(first);
+    out.y.resize(whole ? out.y.size() : had);
+    out.v.resize(out.y.size());
+  }
+  return out;
+}
+
+/// The device by all of its channels together.
+void add_devices(double probability, const DeviceTable& table, Statistic& s) {
+  const std::size_t channels = table.channels.size();
+  const std::vector<Outlier> found = find_device_outliers(table.y, table.v, channels, probability);
+  std::vector<double> mean(table.member.size());
+  for (std::size_t i = 0; i < table.y.size(); ++i)
+    mean[i / channels] += table.y[i] / static_cast<double>(channels);
+  double others = 0, count = 0;
+  for (std::size_t d = 0; d < mean.size(); ++d) {
+    const bool out =
+        std::any_of(found.begin(), found.end(), [&](const Outlier& one) { return one.index == d; });
+    others += out ? 0 : mean[d];
+    count += !out;
+  }
+  for (const Outlier& one : found) {
+    const LotPlace place = place_of(*s.group, table.member[one.index]);
+    FleetOutlier& out = s.lot.outliers.emplace_back();
+    out.recording = place.recording;
+    out.channel = place.channel;
+    out.all_channels = true;
+    out.p = one.p;
+    out.deviation = one.deviation;
+    out.value = std::exp(mean[one.index]);
+    out.ratio = std::exp(mean[one.index] - others / count);
+    out.sentence = fmt::format("{} together: {} {} times that of the others ({}).",
+                               first_names(table.channels),
+                               title_of(s.lot.quantity),
+                               number_text(out.ratio, 3),
+                               probability_text(out.p));
+  }
+}
+
 // Fills `searched` and `outliers` of each quantity. `probability`: of naming any device where none
 // stands out.
 void search_outliers(const Fleet& fleet, double probability, std::vector<Statistic>& statistics) {
-  std::size_t count = 0;
-  for (Statistic& s : statistics) {
+  std::size_t channels = 0, kinds = 0;
+  std::vector<DeviceTable> tables(statistics.size());
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    Statistic& s = statistics[i];
     const LotCounts& counts = s.lot.counts;
-    s.lot.searched = shows_outliers(*s.group) && s.lot.effects &&
-                     counts.counted >= kFewestForOutliers &&
-                     enough_count(counts.counted, counts.members);
-    count += s.lot.searched;
+    if (shows_outliers(*s.group)) {
+      s.lot.searched = s.lot.effects && counts.counted >= kFewestForOutliers &&
+                       enough_count(counts.counted, counts.members);
+      channels += s.lot.searched;
+      continue;
+    }
+    tables[i] = device_table(fleet, s);
+    s.lot.searched = tables[i].channels.size() > 1 && tables[i].member.size() >= kFewestForOutliers;
+    kinds += s.lot.searched;
   }
+  // Half to the devices by all of their channels, half to the channels one by one.
+  if (channels > 0 && kinds > 0) probability /= 2;
   parallel::for_each(0, statistics.size(), [&](std::size_t i) {
-    if (statistics[i].lot.searched)
-      add_outliers(fleet, probability / static_cast<double>(count), statistics[i]);
+    Statistic& s = statistics[i];
+    if (!s.lot.searched) return;
+    if (shows_outliers(*s.group))
+      add_outliers(fleet, probability / static_cast<double>(channels), s);
+    else
+      add_devices(probability / static_cast<double>(kinds), tables[i], s);
   });
 }
 
@@ -149,7 +233,7 @@ void mark_devices(const Fleet& fleet, const std::vector<Statistic>& statistics, 
       held(out.devices);
   for (const Statistic& s : statistics) {
     for (const FleetOutlier& o : s.lot.outliers)
-      if (!s.lot.of_kind) outlying[fleet.sorted.device_of[o.recording]] = true;
+      if (!s.lot.of_kind || o.all_channels) outlying[fleet.sorted.device_of[o.recording]] = true;
     for (std::size_t m = 0; m < s.limit.status.size(); ++m) {
       const std::size_t device = s.group->devices[m];
       held[device] = true;
@@ -208,39 +292,48 @@ std::string without_result(const FleetLot& lot) {
   return out;
 }
 
-std::string stand_out(std::size_t count, const char* what) {
-  return count == 1 ? fmt::format(" 1 {} stands out from its kind.", what)
-                    : fmt::format(" {} {}s stand out from their kind.", count, what);
+std::string stand_out(const std::vector<std::string>& names, const char* what) {
+  return names.size() == 1 ? fmt::format(" 1 {} stands out from its kind: {}.", what, names[0])
+                           : fmt::format(" {} {}s stand out from their kind: {}.",
+                                         names.size(),
+                                         what,
+                                         first_names(names));
 }
 
 /// That nobody stands out is a finding only where somebody could.
-std::string outlying_sentence(const FleetLot& lot) {
+std::string outlying_sentence(const FleetLot& lot, const Fleet& fleet) {
+  std::vector<std::string> devices;
+  for (const std::size_t r : fleet.sorted.first)
+    if (lot.stands_out[r]) devices.push_back(fleet.records[r].device);
   std::set<std::pair<std::size_t, std::size_t>> channels;  // of single devices
   bool any = false, searched = false, axes = true;
   for (const QuantityLot& q : lot.quantities) {
     any = any || q.counts.counted > 0;
     searched = searched || q.searched;
     axes = axes && (q.of_kind || !q.searched);
-    if (q.of_kind)
-      for (const FleetOutlier& o : q.outliers) channels.emplace(o.recording, o.channel);
+    for (const FleetOutlier& o : q.outliers)
+      if (q.of_kind && !o.all_channels) channels.emplace(o.recording, o.channel);
   }
   if (!any) return " There is no result to judge.";
   if (!searched)
     return fmt::format(" Too few of a kind to say which stands out: at least {} are needed.",
                        kFewestForOutliers);
-  std::string out = lot.outlying > 0 ? stand_out(lot.outlying, "device") : "";
-  if (!channels.empty()) out += stand_out(channels.size(), "channel");
+  std::vector<std::string> of_one;
+  for (const auto& [recording, channel] : channels)
+    of_one.push_back(fleet.records[recording].channels[channel].name);
+  std::string out = devices.empty() ? "" : stand_out(devices, "device");
+  if (!of_one.empty()) out += stand_out(of_one, "channel");
   if (!out.empty()) return out;
   return axes ? " No channel stands out from its kind." : " No device stands out from its kind.";
 }
 
-std::string fleet_verdict(const FleetLot& lot) {
+std::string fleet_verdict(const FleetLot& lot, const Fleet& fleet) {
   std::string out = plural(lot.devices, "device");
   if (lot.types.size() > 1) out += fmt::format(" of {} types", lot.types.size());
   if (lot.batches.size() > 1) out += fmt::format(" in {} batches", lot.batches.size());
   if (lot.order.size() != lot.devices)
     out += fmt::format(", {}", plural(lot.order.size(), "recording"));
-  out += without_result(lot) + "." + outlying_sentence(lot);
+  out += without_result(lot) + "." + outlying_sentence(lot, fleet);
   const std::size_t held = lot.failing + lot.open + lot.keeping;
   if (held > 0)
     out += fmt::format(" Of {} held against limits, {} {}, {} not decided, {} all of them.",
@@ -331,7 +424,7 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
     out.notes.push_back(std::move(note));
   for (std::string& note : warnings_note(records, out.order)) out.notes.push_back(std::move(note));
   out.findings = known_of(records, out.order);
-  out.verdict = fleet_verdict(out);
+  out.verdict = fleet_verdict(out, fleet);
   return out;
 }
 

@@ -27,7 +27,8 @@ namespace libchar {
 struct FleetLotOptions {
   /// Of each type of device; "": of all types not named.
   std::map<std::string, NoiseLimits> limits;
-  /// Of naming any device of a fleet without outliers: each quantity of each channel gets its share.
+  /// Of naming any device of a fleet without outliers: each quantity of each channel, and of each kind of channels,
+  /// gets its share.
   double outlier_probability = 0.01;
   std::size_t worst = 100;  ///< devices in the list of the worst
 };
@@ -122,8 +123,10 @@ struct TemperatureRuns {
 struct FleetOutlier {
   std::size_t recording = 0,
               channel = 0;  ///< indices into the records: the device's first recording
-  double value = 0;
-  double ratio = 1;      ///< to the mean of the others, of what is compared as logarithm
+  bool all_channels =
+      false;         ///< of a kind: the device by all of its channels together, from `channel` on
+  double value = 0;  ///< of these the geometric mean
+  double ratio = 1;  ///< to the mean of the others, of what is compared as logarithm
   double deviation = 0;  ///< from the others, in standard deviations of that difference
   double p = 1;          ///< of so large a deviation of any device
   std::string sentence;
@@ -152,7 +155,8 @@ struct QuantityLot {
   std::optional<ControlChart> chart;  ///< by batch and device; its indices are those of `charted`
   std::vector<std::size_t> charted;   ///< recording of each value of the chart
   std::optional<Capability> capability;
-  // Of a channel among devices; of a kind where one device has all of its channels:
+  // Of a channel among devices; of a kind the devices by all of their channels, or, where one device has all, its
+  // channels:
   bool searched = false;               ///< there are enough to find outliers
   std::vector<FleetOutlier> outliers;  ///< worst first
 };

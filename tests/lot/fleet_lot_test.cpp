@@ -121,7 +121,46 @@ TEST_CASE("a device that does not belong to its fleet is named with its reason, 
         Approx(1.5).epsilon(0.2));
   CHECK(lot.stands_out[16]);
   CHECK_FALSE(lot.stands_out[17]);
-  CHECK_THAT(lot.verdict, Contains("2 devices stand out"));
+  CHECK_THAT(lot.verdict, Contains("2 devices stand out from their kind: imu17, imu41."));
+}
+
+TEST_CASE("a device that is a little noisier in all of its channels stands out as a device") {
+  int named = 0, others = 0, clean = 0;
+  test::MadeLot made;
+  made.devices = 6;
+  made.channels = {"gyro_x", "gyro_y", "gyro_z"};
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    auto records = test::made_lot(made, 900 + seed);
+    clean += fleet_lot(records).outlying > 0;
+    for (RecordedChannel& c : records[2].channels) c.values[0].value *= 1.4;
+    const FleetLot lot = fleet_lot(records);
+    named += lot.stands_out[2];
+    others += lot.outlying > (lot.stands_out[2] ? 1U : 0U);
+    if (!lot.stands_out[2] || lot.outlying > 1) continue;
+    CHECK(lot.verdict == "6 devices. 1 device stands out from its kind: imu3.");
+    CHECK_THAT(lot.worst[0].reasons.back(), Contains("times that of the others"));
+  }
+  CHECK(named >= 70);
+  CHECK(others <= 4);
+  CHECK(clean <= 4);  // 1 is expected; more than 4 by chance: 0.4 %
+}
+
+TEST_CASE("what all channels of a device share is no alarm where every device has its own") {
+  int named = 0;
+  test::MadeLot made;
+  made.devices = 8;
+  made.spread[0] = 0.02;
+  made.channels = {"a", "b", "c", "d", "e", "f"};
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    auto records = test::made_lot(made, 2900 + seed);
+    test::Gaussian gauss(seed);
+    for (DeviceRecord& r : records) {
+      const double by = std::exp(0.1 * gauss());
+      for (RecordedChannel& c : r.channels) c.values[0].value *= by;
+    }
+    named += fleet_lot(records).outlying > 0;
+  }
+  CHECK(named <= 8);
 }
 
 TEST_CASE("a fleet without a device that stands out names one in 1 %") {
@@ -295,7 +334,7 @@ TEST_CASE("axes that differ in every device alike are no device's fault, of one 
   CHECK(lot.worst.empty());
   records.resize(1);
   const FleetLot axes = fleet_lot(records);
-  CHECK(axes.verdict == "1 device. 1 channel stands out from its kind.");
+  CHECK(axes.verdict == "1 device. 1 channel stands out from its kind: gz.");
   CHECK(axes.outlying == 0);
   const QuantityLot& kind = find(axes, "angular_rate in deg/s", DeviceQuantity::white_noise);
   REQUIRE(kind.outliers.size() == 1);

@@ -138,13 +138,14 @@ Json outliers_json(const FleetReport& report, const QuantityLot& q) {
   for (std::size_t i = 0; i < std::min(kOutliersInJson, q.outliers.size()); ++i) {
     const FleetOutlier& o = q.outliers[i];
     const DeviceRecord& r = report.records[o.recording];
-    out.push_back({{"device", json_text(r.device)},
-                   {"channel", json_text(r.channels[o.channel].name)},
-                   {"value", json_number(o.value)},
-                   {"ratio", in_logarithm(q.quantity) ? json_number(o.ratio) : Json(nullptr)},
-                   {"deviation", json_number(o.deviation)},
-                   {"p", json_number(o.p)},
-                   {"sentence", json_text(o.sentence)}});
+    out.push_back(
+        {{"device", json_text(r.device)},
+         {"channel", o.all_channels ? Json(nullptr) : Json(json_text(r.channels[o.channel].name))},
+         {"value", json_number(o.value)},
+         {"ratio", in_logarithm(q.quantity) ? json_number(o.ratio) : Json(nullptr)},
+         {"deviation", json_number(o.deviation)},
+         {"p", json_number(o.p)},
+         {"sentence", json_text(o.sentence)}});
   }
   return out;
 }

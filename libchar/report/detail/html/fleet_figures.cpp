@@ -305,7 +305,7 @@ AllanFigure& figure_of(const Channel& channel,
 bool stands_out(const FleetLot& lot, std::size_t recording, std::size_t channel) {
   for (const QuantityLot& q : lot.quantities)
     for (const FleetOutlier& o : q.outliers)
-      if (o.recording == recording && o.channel == channel) return true;
+      if (o.recording == recording && (o.channel == channel || o.all_channels)) return true;
   return false;
 }
 
