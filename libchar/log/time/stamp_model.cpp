@@ -10,6 +10,7 @@
 //    longer than 1.5 steps that no later row makes good as gaps; the mean of the other steps is the
 //    next interval, until it stays. Where gaps are few that is the interval.
 // 4. Where they are many, one of these explains it, or the log is refused:
+//      missing  all steps are whole multiples of the common one, and the stamps lead away from every line
 //      coarse   all steps are multiples of the clock's step q, and every stamp stands within a band
 //               of 1.5 q (2 q in longer logs) about one line: rounding moves a stamp by at most q,
 //               while rows missing at random lead away from every line like a random walk
@@ -255,41 +256,6 @@ bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) 
   return odd >= kLeastOdd && line.spread <= (odd >= 2 * kLeastOdd ? 2 : 1.5) * tick;
 }
 
-/// What explains that many steps are longer than the common one.
-StampPattern explanation(const FirstSteps& steps,
-                         const CommonStep& common,
-                         const std::vector<double>& gaps) {
-  const auto share = [&](const auto& holds) {
-    return static_cast<double>(std::count_if(gaps.begin(), gaps.end(), holds)) /
-           static_cast<double>(gaps.size());
-  };
-  const bool to_a_line = keeps_to_a_line(steps);
-  const double tick = tick_of(steps.rising);
-  const bool coarse = to_a_line && tick > 0.2 * common.ns &&
-                      std::all_of(steps.rising.begin(), steps.rising.end(), [&](double step) {
-                        return multiple_of(step, tick, 1e-3);
-                      });
-  // Where steps are alike to a percent, longer gaps are known as exactly.
-  const double near = 0.02 + 2.5 * common.spread, longest = near <= 0.05 ? 20.5 : 3.5;
-  const double exact = near <= 0.05 ? near - 0.01 : std::min(0.25, near);
-  const auto whole = [&](double gap) { return gap < longest && multiple_of(gap, 1, exact); };
-  if (!coarse && share(whole) > 0.9) return StampPattern::steps;
-  const double rows_a_gap =
-      static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
-  const bool in_packets =
-      rows_a_gap <= kLongestPacket &&
-      (steps.mean > 2 * common.ns || (steps.mean > 1.2 * common.ns && rows_a_gap > 2.5));
-  if (to_a_line)
-    return in_packets ? StampPattern::packets
-           : coarse   ? StampPattern::coarse
-                      : StampPattern::uneven;
-  if (steps.mean > 2 * common.ns && in_packets) return StampPattern::packets;
-  if (!common.tidy) return StampPattern::steps;
-  // Of steps that are no multiples 40 % come as near to one by chance.
-  return share([](double gap) { return multiple_of(gap, 1, 0.2); }) > 0.55 ? StampPattern::steps
-                                                                           : StampPattern::disputed;
-}
-
 /// The step of which half of the time consists of longer ones: that from packet to packet, however many rows follow
 /// each other at once in them.
 double step_of_half_the_time(const FirstSteps& steps) {
@@ -323,6 +289,56 @@ std::size_t rows_of_packets(const std::vector<std::size_t>& starts) {
   const double usual = middle_of(sizes);
   const auto alike = static_cast<double>(std::count(sizes.begin(), sizes.end(), usual));
   return usual > 1 && alike >= kAlike * count ? static_cast<std::size_t>(usual) : 0;
+}
+
+/// Steps that are whole multiples of the common one and whose stamps lead away from every line: rows are missing,
+/// however many. Stamps of packets are late against an even clock, by no more than a packet or two; where packets are
+/// missing, those that are left are alike.
+bool rows_are_missing(const FirstSteps& steps, const CommonStep& common) {
+  constexpr double kFar = 2;  // longest steps: one walk in a hundred stays as near
+  if (!common.tidy || rows_of_packets(packet_starts(steps)) > 0) return false;
+  double longest = 0;
+  for (const double step : steps.rising) {
+    if (!multiple_of(step, common.ns, 1e-3)) return false;
+    longest = std::max(longest, step);
+  }
+  return line_through(steps.line).spread > kFar * longest;
+}
+
+/// What explains that many steps are longer than the common one.
+StampPattern explanation(const FirstSteps& steps,
+                         const CommonStep& common,
+                         const std::vector<double>& gaps) {
+  const auto share = [&](const auto& holds) {
+    return static_cast<double>(std::count_if(gaps.begin(), gaps.end(), holds)) /
+           static_cast<double>(gaps.size());
+  };
+  if (rows_are_missing(steps, common)) return StampPattern::steps;
+  const bool to_a_line = keeps_to_a_line(steps);
+  const double tick = tick_of(steps.rising);
+  const bool coarse = to_a_line && tick > 0.2 * common.ns &&
+                      std::all_of(steps.rising.begin(), steps.rising.end(), [&](double step) {
+                        return multiple_of(step, tick, 1e-3);
+                      });
+  // Where steps are alike to a percent, longer gaps are known as exactly.
+  const double near = 0.02 + 2.5 * common.spread, longest = near <= 0.05 ? 20.5 : 3.5;
+  const double exact = near <= 0.05 ? near - 0.01 : std::min(0.25, near);
+  const auto whole = [&](double gap) { return gap < longest && multiple_of(gap, 1, exact); };
+  if (!coarse && share(whole) > 0.9) return StampPattern::steps;
+  const double rows_a_gap =
+      static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
+  const bool in_packets =
+      rows_a_gap <= kLongestPacket &&
+      (steps.mean > 2 * common.ns || (steps.mean > 1.2 * common.ns && rows_a_gap > 2.5));
+  if (to_a_line)
+    return in_packets ? StampPattern::packets
+           : coarse   ? StampPattern::coarse
+                      : StampPattern::uneven;
+  if (steps.mean > 2 * common.ns && in_packets) return StampPattern::packets;
+  if (!common.tidy) return StampPattern::steps;
+  // Of steps that are no multiples 40 % come as near to one by chance.
+  return share([](double gap) { return multiple_of(gap, 1, 0.2); }) > 0.55 ? StampPattern::steps
+                                                                           : StampPattern::disputed;
 }
 
 /// Time over rows from one first row of a packet to another, the median: packets that are missing here and there do
