@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,24 +32,6 @@ namespace {
 constexpr std::uint64_t kFewestSamples = 64;  ///< of a series
 constexpr double kMostMissingAtRest = 0.01;   ///< share: filled gaps are stiller than any sensor
 
-/// What is left of a record between stretches in motion: the longest part.
-Interval longest_between(std::vector<Interval> moving, double end_s) {
-  std::sort(moving.begin(), moving.end(), [](const Interval& a, const Interval& b) {
-    return a.low < b.low;
-  });
-  Interval best;
-  double from = 0;
-  const auto offer = [&](double to) {
-    if (to - from > best.high - best.low) best = {from, to};
-  };
-  for (const Interval& stretch : moving) {
-    offer(stretch.low);
-    from = std::max(from, stretch.high);
-  }
-  offer(end_s);
-  return best;
-}
-
 /// Sees a whole log and says which stretch of it is still.
 class StillSearch final : public BlockSink {
  public:
@@ -63,42 +46,59 @@ class StillSearch final : public BlockSink {
       throw numeric_error("E0705", log.file)
           .says("the rate is not known: no still stretch can be searched")
           .hint("give `rate_hz`");
-    std::vector<Interval> moving;
+    const Interval all{0, static_cast<double>(log.samples) / log.time.rate_hz};
+    Interval still = all;
     Stretch out;
-    std::size_t tested = 0;
-    for (std::size_t c = 0; c < means_.size(); ++c) {
-      const MeanMeter& means = means_[c];
-      const auto samples = static_cast<double>(means.samples());
-      if (means.samples() < kFewestSamples ||
-          static_cast<double>(means.missing()) > kMostMissingAtRest * samples)
-        continue;
-      const Motion motion = find_motion(means.series(log.time.rate_hz));
-      if (!motion.tested) continue;
-      ++tested;
-      if (motion.whole)
-        throw numeric_error("E0705", log.file)
-            .says("the channel {} moves throughout: the log has no still stretch",
-                  log.channels[c].name)
-            .hint("name the stretch with `still` FROM..TO, or choose other `channels`");
-      if (!motion.moving_s.empty()) out.moving.push_back(log.channels[c].name);
-      moving.insert(moving.end(), motion.moving_s.begin(), motion.moving_s.end());
+    std::set<std::string> restless;
+    // What is left may show what the whole of it hid.
+    for (int round = 0; round < kMostRounds; ++round) {
+      std::vector<Interval> left_out;
+      std::size_t tested = 0;
+      for (std::size_t c = 0; c < means_.size(); ++c) {
+        const Motion motion = motion_in(still, means_[c], log.time.rate_hz);
+        tested += motion.tested;
+        if (round == 0 && motion.whole)
+          throw numeric_error("E0705", log.file)
+              .says("the channel {} moves throughout: the log has no still stretch",
+                    log.channels[c].name)
+              .hint("name the stretch with `still` FROM..TO, or choose other `channels`");
+        for (const auto* stretches : {&motion.moving_s, &motion.louder_s})
+          for (const Interval& s : *stretches)
+            left_out.push_back({still.low + s.low, still.low + s.high});
+        if (!motion.moving_s.empty() || !motion.louder_s.empty())
+          restless.insert(log.channels[c].name);
+      }
+      if (round == 0 && tested == 0) refuse_untested(log);
+      if (left_out.empty()) break;
+      still = detail::longest_between(std::move(left_out), still);
     }
-    if (tested == 0)
-      throw numeric_error("E0705", log.file)
-          .says(
-              "no channel can be searched for a still stretch: they are short (2048 samples are "
-              "needed), have many missing samples, or mostly repeat their values")
-          .hint("name the stretch with `still` FROM..TO");
-    const double end_s = static_cast<double>(log.samples) / log.time.rate_hz;
-    const Interval longest = longest_between(std::move(moving), end_s);
-    out.from_s = longest.low;
-    out.to_s = longest.high;
+    for (const Channel& channel : log.channels)
+      if (restless.contains(channel.name)) out.moving.push_back(channel.name);
+    out.from_s = still.low;
+    out.to_s = still.high;
     out.found = true;
-    out.whole = longest.low <= 0 && longest.high >= end_s;
+    out.whole = still.low <= 0 && still.high >= all.high;
     return out;
   }
 
  private:
+  static constexpr int kMostRounds = 4;
+  [[noreturn]] static void refuse_untested(const LogInfo& log) {
+    throw numeric_error("E0705", log.file)
+        .says(
+            "no channel can be searched for a still stretch: they are short (2048 samples are "
+            "needed), have many missing samples, or mostly repeat their values")
+        .hint("name the stretch with `still` FROM..TO");
+  }
+  /// On the clock of the stretch.
+  static Motion motion_in(const Interval& still, const MeanMeter& means, double rate_hz) {
+    const auto samples = static_cast<double>(means.samples());
+    const double count = (still.high - still.low) * rate_hz;
+    if (count < kFewestSamples * static_cast<double>(means.per_mean()) ||
+        static_cast<double>(means.missing()) > kMostMissingAtRest * samples)
+      return {};
+    return find_motion(means.series(rate_hz, still));
+  }
   std::vector<MeanMeter> means_;
 };
 
@@ -117,16 +117,27 @@ void check_still(const StillOptions& still, const ReadOptions& reading) {
         .got("{} to {} s", brief_text(s.low, 6), brief_text(s.high, 6));
 }
 
+/// Whether a channel says of what was analysed that it moves or changes, too weakly for the search.
+bool any_restless(std::span<const ChannelResult> channels) {
+  return std::any_of(channels.begin(), channels.end(), [](const ChannelResult& channel) {
+    return !channel.motion.moving_s.empty() || !channel.motion.changes.empty() ||
+           (channel.fit && has(channel.fit->findings, "not_stationary"));
+  });
+}
+
 /// "Only the stretch from 38.6 to 186 s was analysed, the longest in which nothing moves."
-std::string stretch_sentence(const Stretch& stretch) {
-  if (stretch.whole) return "Nothing moves in the recording: all of it was analysed.";
+std::string stretch_sentence(const Stretch& stretch, std::span<const ChannelResult> channels) {
+  if (stretch.whole)
+    return any_restless(channels) ? "No part of the recording is loud enough to be left out: "
+                                    "all of it was analysed."
+                                  : "Nothing moves in the recording: all of it was analysed.";
   std::string text = fmt::format("Only the stretch from {} to {} s was analysed, {}",
                                  brief_text(stretch.from_s, 6),
                                  brief_text(stretch.to_s, 6),
                                  stretch.found ? "the longest in which nothing moves" : "as asked");
   if (stretch.moving.empty()) return text + ".";
   const std::size_t shown = std::min<std::size_t>(stretch.moving.size(), 6);
-  text += " (moving outside: ";
+  text += " (moving or louder outside: ";
   for (std::size_t i = 0; i < shown; ++i) text += (i == 0 ? "" : ", ") + stretch.moving[i];
   return text + (shown < stretch.moving.size() ? ", …)." : ").");
 }
@@ -308,7 +319,7 @@ void note_stretch(Stretch stretch, Characterization& result) {
     stretch.to_s =
         stretch.from_s + static_cast<double>(result.log.samples) / result.log.time.rate_hz;
   check_reached(stretch, result.log);
-  stretch.sentence = stretch_sentence(stretch);
+  stretch.sentence = stretch_sentence(stretch, result.channels);
   if (!stretch.whole) result.log.stretch_s = Interval{stretch.from_s, stretch.to_s};
   result.still = std::move(stretch);
 }

@@ -3,6 +3,7 @@
 #include "libchar/fit/record/mean_meter.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -51,6 +52,20 @@ std::uint64_t MeanMeter::missing() const {
 
 EventSeries MeanMeter::series(double rate_hz) const {
   EventSeries series = event_series(means(), rate_hz / static_cast<double>(all_.length), kMostKept);
+  series.per_point *= all_.length;
+  return series;
+}
+
+EventSeries MeanMeter::series(double rate_hz, const Interval& part_s) const {
+  const std::vector<double> all = means();
+  const double per_s = rate_hz / static_cast<double>(all_.length);
+  const auto at = [&](double time_s) {
+    return static_cast<std::size_t>(
+        std::min(static_cast<double>(all.size()), std::round(time_s * per_s)));
+  };
+  const std::size_t first = at(part_s.low);
+  EventSeries series =
+      event_series(std::span(all).subspan(first, std::max(first, at(part_s.high)) - first), per_s);
   series.per_point *= all_.length;
   return series;
 }

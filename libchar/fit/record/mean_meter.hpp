@@ -31,6 +31,8 @@ class MeanMeter {
   std::uint64_t missing() const;
   /// As `event_series` makes it of the samples. Throws Error(numeric) for fewer than 64 means.
   EventSeries series(double rate_hz) const;
+  /// As `event_series` makes it of the samples of a part, on its clock.
+  EventSeries series(double rate_hz, const Interval& part_s) const;
 
   void write_state(StateWriter& to) const;
   void read_state(StateReader& from);

@@ -30,7 +30,9 @@ constexpr double kFactor = 2;    ///< by which motion is louder than rest
 constexpr double kSpreads = 6;
 constexpr double kLasting =
     0.1;  ///< share of a record from which on a louder stretch may be a change
-constexpr double kLoudest = 4;     ///< factor up to which it is
+constexpr double kLoudest = 4;  ///< factor up to which it is
+constexpr double kSlower =
+    1.3;  ///< and its slow differences by no more than this beyond the fast ones
 constexpr double kFaintest = 1e4;  ///< quieter by more than this: a link that hung, filled gaps
 constexpr double kRepeats =
     0.3;  ///< share of repeated values: a staircase, whose steps come and go
@@ -170,12 +172,22 @@ std::optional<Agreeing> agreeing(const std::vector<double>& values,
   return quiet_window(values, filled, sorted[sorted.size() / 2], kFactor);
 }
 
-/// Blocks above the agreeing ones.
+/// Blocks above the agreeing ones, and those beside them that are half as far above.
 std::vector<char> louder(const std::vector<double>& values, const Agreeing& rest) {
-  const double limit = rest.centre + std::max(std::log(kFactor), kSpreads * rest.spread);
-  std::vector<char> above(values.size());
-  for (std::size_t b = 0; b < values.size(); ++b) above[b] = values[b] > limit ? 1 : 0;
-  return above;
+  constexpr int kBeside = 1;  // coarse activities reach farther than what they are of
+  const double far = std::max(std::log(kFactor), kSpreads * rest.spread);
+  const auto above = [&](std::size_t b, double by) { return values[b] > rest.centre + by; };
+  std::vector<char> out(values.size());
+  for (std::size_t b = 0; b < out.size(); ++b) out[b] = above(b, far) ? 1 : 0;
+  for (int round = 0; round < kBeside; ++round) {
+    const std::vector<char> before = out;
+    for (std::size_t b = 0; b < out.size(); ++b) {
+      const bool beside =
+          (b > 0 && before[b - 1] != 0) || (b + 1 < out.size() && before[b + 1] != 0);
+      if (beside && above(b, far / 2)) out[b] = 1;
+    }
+  }
+  return out;
 }
 
 struct Run {
@@ -195,23 +207,32 @@ std::vector<Run> runs_of(const std::vector<char>& in, char which) {
   return runs;
 }
 
-/// A stretch that is louder by a little and steadily so.
-bool lasting(std::span<const double> inside, std::size_t blocks, double centre) {
-  if (static_cast<double>(inside.size()) < kLasting * static_cast<double>(blocks)) return false;
-  std::vector<double> sorted(inside.begin(), inside.end());
-  std::sort(sorted.begin(), sorted.end());
-  return sorted[sorted.size() / 2] < centre + std::log(kLoudest) &&
-         shortest_half(sorted, 0.8, 2.563).spread <= kAgree;
+/// A stretch that is louder by a little and steadily so, and not the slower the louder: noise that grows does so at
+/// every width, a hand moves the means of many values most.
+bool lasting(const Activity& activity, const Run& run, const std::vector<double>& centre) {
+  if (static_cast<double>(run.length()) < kLasting * static_cast<double>(activity.fine.size()))
+    return false;
+  double fine = 0;
+  for (std::size_t a = 0; a < centre.size(); ++a) {
+    const std::vector<double>& logs = a == 0 ? activity.fine : activity.coarse[a - 1];
+    const auto first = logs.begin() + static_cast<std::ptrdiff_t>(run.from);
+    std::vector<double> sorted(first, first + static_cast<std::ptrdiff_t>(run.length()));
+    std::sort(sorted.begin(), sorted.end());
+    const double above = sorted[sorted.size() / 2] - centre[a];
+    if (a == 0) fine = above;
+    if (above > std::min(std::log(kLoudest), fine + std::log(kSlower))) return false;
+    if (a == 0 && shortest_half(sorted, 0.8, 2.563).spread > kAgree) return false;
+  }
+  return true;
 }
 
 /// Moving blocks: a single quiet one between two is one, a single loud one is none, and what is louder throughout a long stretch
 /// is a change of strength.
-void tidy(const Activity& activity, double centre, std::vector<char>& moving) {
+void tidy(const Activity& activity, const std::vector<double>& centre, std::vector<char>& moving) {
   for (const Run& run : runs_of(moving, 0))
     if (run.length() == 1 && run.from > 0 && run.to < moving.size()) moving[run.from] = 1;
   for (const Run& run : runs_of(moving, 1)) {
-    const std::span<const double> inside = std::span(activity.fine).subspan(run.from, run.length());
-    if (run.length() < 2 || lasting(inside, moving.size(), centre))
+    if (run.length() < 2 || lasting(activity, run, centre))
       std::fill_n(moving.begin() + static_cast<std::ptrdiff_t>(run.from), run.length(), 0);
   }
   // The blocks beside hold the beginning and the end.
@@ -237,13 +258,15 @@ std::optional<std::vector<char>> moving_blocks(const Activity& activity) {
   const std::optional<Agreeing> fine = agreeing(activity.fine, filled, activity.unseen);
   if (!fine) return std::nullopt;
   std::vector<char> moving = louder(activity.fine, *fine);
+  std::vector<double> centre = {fine->centre};
   for (const std::vector<double>& coarse : activity.coarse) {
     const std::optional<Agreeing> rest = agreeing(coarse, filled, activity.unseen);
     if (!rest) return std::nullopt;
     const std::vector<char> slowly = louder(coarse, *rest);
+    centre.push_back(rest->centre);
     for (std::size_t b = 0; b < moving.size(); ++b) moving[b] |= slowly[b];
   }
-  tidy(activity, fine->centre, moving);
+  tidy(activity, centre, moving);
   return moving;
 }
 
@@ -387,23 +410,62 @@ double louder_by_motion(const Activity& activity, const std::vector<char>& movin
   return most;
 }
 
-/// The longest run that is still, on the record's clock.
-std::optional<Interval> longest_of(const std::vector<Run>& still,
-                                   std::size_t blocks,
-                                   const EventSeries& series,
-                                   double block_s) {
-  const auto longest = std::max_element(still.begin(), still.end(), [](const Run& a, const Run& b) {
-    return a.length() < b.length();
-  });
-  if (longest == still.end()) return std::nullopt;
-  const double end = longest->to == blocks
-                         ? static_cast<double>(series.value.size()) * series.step_s
-                         : static_cast<double>(longest->to) * block_s;
-  return Interval{series.start_s + static_cast<double>(longest->from) * block_s,
-                  series.start_s + end};
+/// Where the noise is stronger than where it is weakest, between its steps.
+std::vector<Interval> louder_between(const std::vector<StrengthChange>& changes,
+                                     double from_s,
+                                     double to_s) {
+  struct Piece {
+    Interval at_s;
+    double level = 0, half = 0;  ///< logarithms, against the first piece
+  };
+  std::vector<Piece> pieces = {{{from_s, to_s}}};
+  std::vector<const StrengthChange*> steps;
+  for (const StrengthChange& change : changes)
+    if (change.kind == EventKind::step) steps.push_back(&change);
+  std::sort(
+      steps.begin(), steps.end(), [](const auto* a, const auto* b) { return a->at_s < b->at_s; });
+  for (const StrengthChange* step : steps) {
+    const Piece& before = pieces.back();
+    const double half = std::log(step->factor_ci95.high / step->factor);
+    const Piece after = {
+        {step->at_s, to_s}, before.level + std::log(step->factor), std::hypot(before.half, half)};
+    pieces.back().at_s.high = step->at_s;
+    pieces.push_back(after);
+  }
+  const Piece* base = nullptr;
+  for (const Piece& piece : pieces)
+    if (piece.at_s.high - piece.at_s.low >= kLasting * (to_s - from_s) &&
+        (base == nullptr || piece.level < base->level))
+      base = &piece;
+  std::vector<Interval> louder;
+  for (std::size_t i = 0; base != nullptr && i < pieces.size(); ++i) {
+    const double half =
+        std::sqrt(std::abs(pieces[i].half * pieces[i].half - base->half * base->half));
+    if (pieces[i].level - base->level <= half) continue;
+    louder.push_back({i == 0 ? from_s : steps[i - 1]->at_ci95.low,
+                      i == steps.size() ? to_s : steps[i]->at_ci95.high});
+  }
+  return louder;
 }
 
 }  // namespace
+
+Interval detail::longest_between(std::vector<Interval> restless, const Interval& all_s) {
+  std::sort(restless.begin(), restless.end(), [](const Interval& a, const Interval& b) {
+    return a.low < b.low;
+  });
+  Interval best{all_s.low, all_s.low};
+  double from = all_s.low;
+  const auto offer = [&](double to) {
+    if (to - from > best.high - best.low) best = {from, to};
+  };
+  for (const Interval& stretch : restless) {
+    offer(stretch.low);
+    from = std::max(from, stretch.high);
+  }
+  offer(all_s.high);
+  return best;
+}
 
 Motion find_motion(const EventSeries& series) {
   Motion motion;
@@ -421,10 +483,15 @@ Motion find_motion(const EventSeries& series) {
       motion.moving_s.push_back({series.start_s + static_cast<double>(run.from) * block_s,
                                  series.start_s + static_cast<double>(run.to) * block_s});
     motion.louder = louder_by_motion(activity, *moving);
-    motion.still_s = longest_of(runs_of(*moving, 0), moving->size(), series, block_s);
     const auto still = static_cast<std::size_t>(std::count(moving->begin(), moving->end(), 0));
     if (still >= std::max(kFewestBlocks, moving->size() / 4))
       motion.changes = changes_of(activity, *moving, series.start_s, block_s);
+    const double end_s = series.start_s + duration_s;
+    motion.louder_s = louder_between(motion.changes, series.start_s, end_s);
+    std::vector<Interval> restless = motion.moving_s;
+    restless.insert(restless.end(), motion.louder_s.begin(), motion.louder_s.end());
+    const Interval longest = detail::longest_between(std::move(restless), {series.start_s, end_s});
+    if (longest.high > longest.low) motion.still_s = longest;
   }
   describe(motion, duration_s);
   return motion;

@@ -30,14 +30,23 @@ struct Motion {
       false;  ///< no: too short (2048 values are needed), or most values repeat the one before
   bool whole = false;               ///< in motion throughout: no stretch to compare with
   std::vector<Interval> moving_s;   ///< stretches of motion or handling
-  std::optional<Interval> still_s;  ///< the longest stretch without
+  std::optional<Interval> still_s;  ///< the longest stretch without, and not louder than others
   /// The standard deviation of differences (the largest of three widths) over that of the still stretches alone.
   double louder = 1;
   std::vector<StrengthChange> changes;  ///< of what is left
+  std::vector<Interval>
+      louder_s;  ///< between their steps: stretches stronger than the weakest tenth
   std::vector<Finding> findings;
 };
 
 /// Searches a series as `event_series` makes it. A record of noise alone has motion or a change in less than one of a hundred cases.
 Motion find_motion(const EventSeries& series);
+
+namespace detail {
+
+/// What is left of `all_s` between stretches: the longest part.
+Interval longest_between(std::vector<Interval> restless, const Interval& all_s);
+
+}  // namespace detail
 
 }  // namespace libchar
