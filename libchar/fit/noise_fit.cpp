@@ -363,7 +363,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
     report_band(now.band, bins, now.fit);
     if (hump) answer_hump(bins, now.band.bottom_hz, options.terms, now.fit);
     answer_low_frequencies(now);
-    report_high_pass(now.band, now.fit);
+    report_corner(now.band, now.fit);
     if (law) answer_power_law(*law, now.fit);
     if (band_options.small_shapes && now.band.passes)
       average_over_small_shapes(

@@ -237,3 +237,46 @@ TEST_CASE("a limit of white noise is not below the spectrum above the band") {
   const Coefficient& white = fit[Term::white];  // truth 0.001
   CHECK((white.value ? white.ci95.high : *white.upper95) > 0.9e-3);
 }
+
+namespace {
+
+/// A Gauss-Markov process.
+std::vector<double> process(std::size_t n, double sigma, double tau_s, test::Gaussian& gauss) {
+  const double keep = std::exp(-1 / (kRate * tau_s));
+  std::vector<double> y(n, 0.0);
+  double now = sigma * gauss();
+  for (double& value : y) value = now = keep * now + sigma * std::sqrt(1 - keep * keep) * gauss();
+  return y;
+}
+
+bool says(const NoiseFit& fit, std::string_view code) {
+  return has(fit.findings, code);
+}
+
+}  // namespace
+
+TEST_CASE("what lies above white noise at the slow end is no high-pass") {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    test::NoiseSource source(60000, kRate, 700 + seed);
+    std::vector<double> y = source.record(0.1, 0, 0);
+    const std::vector<double> fast = process(y.size(), 0.3, 0.3, source.gauss()),
+                              slow = process(y.size(), 0.1, 5, source.gauss());
+    for (std::size_t t = 0; t < y.size(); ++t) y[t] += fast[t] + slow[t];
+    CHECK_FALSE(says(fit_record(y, kRate, nullptr, FitOptions{}), "high_passed"));
+  }
+}
+
+TEST_CASE(
+    "white noise beside a fast process, or behind a shelf: N is undetermined, its interval holds "
+    "both levels") {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    test::NoiseSource source(60000, kRate, 720 + seed);
+    std::vector<double> y = source.record(0.1, 0, 0);
+    const std::vector<double> fast = process(y.size(), 0.3, 0.1, source.gauss());
+    for (std::size_t t = 0; t < y.size(); ++t) y[t] += fast[t];
+    const NoiseFit fit = fit_record(y, kRate, nullptr, FitOptions{});
+    const Coefficient& white = fit[Term::white];
+    INFO("seed " << seed << " N " << white.value.value_or(0));
+    CHECK((white.status != Status::detected || white.ci95.low < 0.1));
+  }
+}

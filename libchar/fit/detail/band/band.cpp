@@ -525,10 +525,34 @@ ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest
   return out;
 }
 
+/// The slow end of a trial over the largest that its model is anywhere, in the model or as it was measured below a
+/// third of the corner: near one is a plateau that begins above, a process, and no high-pass.
+double slow_end_of(const Search& search, const Trial& trial) {
+  Band all = trial.band;
+  std::fill(all.inside.begin(), all.inside.end(), 1);
+  const std::vector<PowerBin> inside = bins_of(search.bins, all, search.rate_hz);
+  double slowest_hz = std::numeric_limits<double>::infinity(), slow = 0, most = 0;
+  double energy = 0, dof = 0;
+  for (const PowerBin& bin : inside) {
+    double model = 0;
+    for (std::size_t i = 0; i < kTerms; ++i) model += trial.theta[i] * bin.unit[i];
+    most = std::max(most, model);
+    if (bin.high_hz < trial.band.named.pole_hz / 3) {
+      energy += bin.dof * bin.energy;
+      dof += bin.dof;
+    }
+    if (bin.frequency_hz >= slowest_hz) continue;
+    slowest_hz = bin.frequency_hz;
+    slow = model;
+  }
+  return std::min(slow, dof > 0 ? energy / dof : slow) / most;
+}
+
 /// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it.
 std::optional<Band> high_passed(const Search& search, const Trial& unshaped, double slowest_hz) {
-  constexpr double kNeeded = 16;   ///< of 2 lnL
-  constexpr double kPeriods = 12;  ///< of the corner in the record: below, a drift looks like that
+  constexpr double kNeeded = 16;  ///< of 2 lnL
+  constexpr double kPeriods = 4;  ///< of the corner in the record: below, a drift looks like that
+  constexpr double kFalls = 0.5;  ///< at the slow end, of the largest
   const double duration_s = 0.25 / slowest_hz;
   Band band = unshaped.band;
   NamedShape best;
@@ -565,7 +589,7 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   for (std::size_t j = 0; j < search.bins.size(); ++j)
     if (search.bins[j].high_hz < ends_hz) band.inside[j] = 0;
   const std::optional<Trial> trial = search.at(band);
-  if (!trial || !trial->band.passes) return std::nullopt;
+  if (!trial || !trial->band.passes || slow_end_of(search, *trial) > kFalls) return std::nullopt;
   return trial->band;
 }
 

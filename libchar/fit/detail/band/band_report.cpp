@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
@@ -202,7 +203,36 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
          left_out});
 }
 
-void report_high_pass(const Band& band, NoiseFit& fit) {
+namespace {
+
+/// White noise whose level falls from a slow one to a fast one, and white noise beside a Gauss-Markov process, have
+/// the same spectrum: which of the levels is N the record does not say.
+void report_two_levels(const NamedShape& shape, NoiseFit& fit) {
+  Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
+  if (shape.family != NamedShape::Family::shelf || !(shape.pole_hz < shape.zero_hz) || !white.value)
+    return;
+  const auto square = [&](double corner_hz) {
+    return std::pow(std::sin(std::numbers::pi * std::min(corner_hz / fit.rate_hz, 0.5)), 2);
+  };
+  const double fast = std::sqrt((1 + 1 / square(shape.zero_hz)) / (1 + 1 / square(shape.pole_hz)));
+  white.status = Status::undetermined;
+  white.ci95.low *= fast;
+  Finding both = finding("undetermined",
+                         fmt::format("The spectrum is that of {}: a filter behind white noise, or "
+                                     "white noise of {} and a process of a "
+                                     "correlation time of {}. N is the level of the slow side.",
+                                     named_shape_text(shape),
+                                     brief_text(*white.value * fast),
+                                     duration_text(1 / (2 * std::numbers::pi * shape.pole_hz))),
+                         "N is undetermined: its spectrum has two levels");
+  both.severity = Severity::caution;
+  fit.findings.push_back(std::move(both));
+}
+
+}  // namespace
+
+void report_corner(const Band& band, NoiseFit& fit) {
+  report_two_levels(band.named, fit);
   if (band.named.family != NamedShape::Family::high_pass) return;
   fit.findings.push_back(finding(
       "high_passed",

@@ -23,8 +23,8 @@ void add_lines(const std::vector<PowerBin>& clipped,
 /// The remedies that stand for the band's decisions.
 void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& fit);
 
-/// The finding, where the slow end is that of a high-pass.
-void report_high_pass(const Band& band, NoiseFit& fit);
+/// The finding, where the slow end is that of a high-pass, or the spectrum has two levels.
+void report_corner(const Band& band, NoiseFit& fit);
 
 /// The residuals inside the band.
 std::vector<FitResidual> inside_of(const std::vector<FitResidual>& residuals);
