@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libchar/characterize/compare/reported_characterization.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/report/json/json_report.hpp"
@@ -257,9 +258,24 @@ RecordedReport report_of_recording(Session& session,
 void add_recording_options(VerbOptions& verb,
                            Session& session,
                            AnalysisOptions& analysis,
+                           const std::vector<std::string>& inputs,
                            bool with_format) {
   add_reading_options_without_channel(verb, session, analysis.options.reading, with_format);
   add_still_option(verb, analysis);
+  verb.only("with a recording",
+            [&inputs] {
+              return std::any_of(inputs.begin(), inputs.end(), [](const std::string& input) {
+                return libchar::detail::is_recording(input);
+              });
+            },
+            {"--still",
+             "--rate",
+             "--from",
+             "--to",
+             "--topic",
+             "--time-source",
+             "--time-column",
+             "--time-unit"});
 }
 
 }  // namespace sensorchar

@@ -57,9 +57,11 @@ RecordedReport report_of_recording(Session& session,
                                    const libchar::CharacterizeOptions& options);
 
 /// Options of verbs that take recordings next to reports: how they are read, --still, --temperature.
+/// `inputs`, which must live until the verb has run: they are refused where none of these is a recording.
 void add_recording_options(VerbOptions& verb,
                            Session& session,
                            AnalysisOptions& analysis,
+                           const std::vector<std::string>& inputs,
                            bool with_format = true);
 
 }  // namespace sensorchar

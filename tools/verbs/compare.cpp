@@ -218,7 +218,7 @@ std::function<void()> compare_options(VerbOptions& options, Session& session) {
                 "a page with verdict, table and overlaid Allan curves, such as which.html")
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");
-  add_recording_options(options, session, verb->analysis);
+  add_recording_options(options, session, verb->analysis, verb->inputs);
   return [&session, verb] { run_compare(session, *verb); };
 }
 

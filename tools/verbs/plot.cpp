@@ -231,7 +231,7 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
   options.add_choice(
       "--format", verb->format, words_of<FigureFormat>(), "what -o is (by its name)");
   options.add_flag("--force", verb->force, "overwrite the output files");
-  add_recording_options(options, session, verb->analysis, false);
+  add_recording_options(options, session, verb->analysis, verb->files, false);
   add_only(options, *verb);
   return [&session, verb] { run_plot(session, *verb); };
 }

@@ -105,7 +105,7 @@ std::function<void()> report_options(VerbOptions& options, Session& session) {
   options.add_text("-o,--output", verb->output, "write there instead of to stdout")
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");
-  add_recording_options(options, session, verb->analysis);
+  add_recording_options(options, session, verb->analysis, verb->files);
   return [verb, &session] { run_report(session, *verb); };
 }
 

@@ -3,10 +3,8 @@
 // s² by (D - 1)(C - 1) more, but not r, the part that a device's channels share. So r is integrated out (Box & Tiao,
 // Bayesian Inference in Statistical Analysis, 1973, ch. 5):
 //   p(r | data) ~ p(r) (1 + C r)^(-f_b/2) S(r)^(-f/2),   S(r) = f_b MS_b / (1 + C r) + f_w MS_w,   f = f_b + f_w
-// and the deviation of a device is Student's t of f degrees of freedom for each r. p(r): 0.7 for r = 0, the rest
-// evenly in ln r from .05 to 1000. Measured for 1 % (lots of 4 to 40 devices of 3 or 6 channels): 0.04 to 0.4 % of
-// lots name a device where channels are independent, at worst 2.5 % where devices differ about as much as channels
-// do; of 6 devices of 3 channels whose spread is 5 %, one 1.25 times as noisy is named in .6, 1.4 times in .9.
+// and the deviation of a device is Student's t of f degrees of freedom for each r. p(r): 0.4 for r = 0, the rest
+// evenly in ln r from .05 to 1000. Alarms and power: tests/lot/device_outliers_test.cpp.
 #include "libchar/lot/detail/statistics/device_outliers.hpp"
 
 #include <algorithm>
@@ -77,7 +75,7 @@ Outlier worst_device(const DeviceMeans& m, double channels) {
   const double off = (m.mean[worst] - mean) * devices / (devices - 1);
   const double f_b = devices - 2, f_w = (devices - 1) * (channels - 1), f = f_b + f_w;
   const double others = channels * std::max(0.0, squares - off * off * (devices - 1) / devices);
-  constexpr double kNone = 0.7, kLow = 0.05, kHigh = 1000;
+  constexpr double kNone = 0.4, kLow = 0.05, kHigh = 1000;
   std::array<double, 13> weight{}, shared{};
   double most = -1e300, sum = 0, p = 0;
   for (std::size_t k = 0; k < weight.size(); ++k) {

@@ -29,7 +29,9 @@ constexpr double kLouder = 2.5;  // times the usual rms of a block
 // Of a sensor that stands apart from the others, at least:
 constexpr double kLeastOffset = 3;  // times the noise
 constexpr double kLeastGain = 0.05;
-constexpr double kLeastLouder = 2;     // of the logarithm of the noise
+constexpr double kLeastLouder = 1;  // of the logarithm of the noise
+// Scatter of sound sensors of one kind.
+constexpr double kUsualGain = 0.03, kUsualLevel = 0.3;
 constexpr double kFalseAlarm = 0.003;  // of each of the three in a sound array
 
 double quantile(std::vector<double> values, double share) {
@@ -212,15 +214,17 @@ std::string change_text(const ReadingMeter::Change& change,
 
 /// How far a value is from others that are as scattered as these, over what chance does in an array in 300: by their
 /// deviation (Student's t of one left out), and of many by their median deviation, so that several may stand apart.
-double apart_from(std::vector<double> others, double value) {
+/// `usual_sd`: what sound sensors scatter by counts as three more of them; 0: nothing is known of that.
+double apart_from(std::vector<double> others, double value, double usual_sd) {
   constexpr std::size_t kMany = 8;
   constexpr double kOfMedian = 10;
   const auto n = static_cast<double>(others.size());
   double mean = 0, squares = 0;
   for (const double other : others) mean += other / n;
   for (const double other : others) squares += (other - mean) * (other - mean);
-  const double sd = std::sqrt(squares / (n - 1) * (1 + 1 / n));
-  const double limit = student_quantile(1 - kFalseAlarm / (2 * (n + 1)), n - 1);
+  const double more = usual_sd > 0 ? 3 : 0, dof = n - 1 + more;
+  const double sd = std::sqrt((squares + more * usual_sd * usual_sd) / dof * (1 + 1 / n));
+  const double limit = student_quantile(1 - kFalseAlarm / (2 * (n + 1)), dof);
   const double by_sd = (value - mean) / (limit * sd);
   if (others.size() < kMany) return by_sd;
   const double middle = median_in_place(others);
@@ -230,7 +234,9 @@ double apart_from(std::vector<double> others, double value) {
 }
 
 /// Of each value, beyond 1 in magnitude: it stands apart, and by `least` at least; 0: unknown.
-std::vector<double> apart(const std::vector<std::optional<double>>& values, double least) {
+std::vector<double> apart(const std::vector<std::optional<double>>& values,
+                          double least,
+                          double usual_sd) {
   std::vector<double> out(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::vector<double> others;
@@ -238,7 +244,7 @@ std::vector<double> apart(const std::vector<std::optional<double>>& values, doub
       if (j != i && values[j]) others.push_back(*values[j]);
     if (!values[i] || others.size() < 2) continue;
     const double away = (*values[i] - median_in_place(others)) / least;
-    const double by_chance = apart_from(std::move(others), *values[i]);
+    const double by_chance = apart_from(std::move(others), *values[i], usual_sd);
     out[i] = std::abs(by_chance) < std::abs(away) ? by_chance : away;
   }
   return out;
@@ -278,8 +284,9 @@ void warn_of_apart(const ReadingMeter::Readings& steady,
   }
   if (rms.size() < 3) return;
   const double usual = median_in_place(rms);
-  const std::vector<double> offsets = apart(offset, kLeastOffset * usual),
-                            gains = apart(gain, kLeastGain), levels = apart(noise, kLeastLouder);
+  const std::vector<double> offsets = apart(offset, kLeastOffset * usual, 0),
+                            gains = apart(gain, kLeastGain, kUsualGain),
+                            levels = apart(noise, kLeastLouder, kUsualLevel);
   for (std::size_t i = 0; i < steady.size(); ++i) {
     const ApartSensor one{names[i], units[i], offsets[i], gains[i], levels[i]};
     if (std::abs(one.offset) > 1 || std::abs(one.gain) > 1 || one.noise > 1)
