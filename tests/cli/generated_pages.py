@@ -202,7 +202,8 @@ def examples():
     (scratch / "line7.yaml").write_text("format: fleet-manifest\nversion: 1\ndefaults: {options: "
                                         "{reading: {rate_hz: 50}}}\ndevices:\n" + "".join(
         f"  - {{log: logs/a0{k}.npy, batch: '2026-1{1 + k % 2}'}}\n" for k in range(4)))
-    before = {"compare": [*(f"cp imu.csv {name}.csv" for name in "ABC"), "cp -r report monday", "cp -r report friday", "cp -r array-replay new-replay"],
+    before = {"compare": [*(f"cp imu.csv {name}.csv" for name in "ABC"),
+                          "cp -r report monday", "cp -r report friday", "cp -r array-replay new-replay"],
               "fleet-plan": ["mkdir logs", *cut, "cd logs && sha256sum *.npy > SHA256SUMS"],
               "fleet-merge": ["sensorchar fleet plan logs/a00.npy logs/a01.npy --rate 50 -o april && sensorchar "
                               "fleet run april",
