@@ -21,6 +21,7 @@
 #include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan/reading_meter.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
+#include "libchar/replay/detail/sensor_doubt.hpp"
 #include "libchar/replay/device_source.hpp"
 
 namespace libchar {
@@ -98,6 +99,7 @@ class Fusing {
   double stated(Eigen::Index input) const;
   void begin_check();
   void check_readings();
+  detail::ReadingMeter::Readings learnt_readings() const;
   void check_noise();
   void tell();
 
@@ -131,6 +133,7 @@ class Fusing {
     std::vector<Eigen::Index> rows;  // of the algorithm, whose sensors are in the log
     std::optional<StepNoiseMeter> steps;
     std::optional<detail::ReadingMeter> readings;
+    std::optional<detail::SensorDoubt> doubt;  // of a method that a failing sensor leads astray
   } check_;
 };
 
@@ -450,12 +453,17 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   x_.resize(inputs, all.cols());
   variance_.resize(inputs, all.cols());
   runner_->run(all, x_, variance_);
+  const std::vector<double>* const doubt =
+      check_.doubt ? &check_.doubt->push(all, x_.row(0)) : nullptr;
   x_ *= output_scale_;
   for (std::vector<double>& column : out_) column.resize(rows);
   for (Eigen::Index j = 0; j < inputs; ++j)
     for (std::size_t k = 0; k < rows; ++k) {
       const auto at = static_cast<Eigen::Index>(k);
-      const double x = x_(j, at), sd = stated(j) * std::sqrt(variance_(j, at));
+      const double x = x_(j, at);
+      double sd = stated(j) * std::sqrt(variance_(j, at));
+      if (doubt != nullptr && (*doubt)[k] > 0)
+        sd = std::hypot(sd, output_scale_ * std::sqrt((*doubt)[k]));
       out_[static_cast<std::size_t>(j)][k] = std::isfinite(x) ? x : kMissing;
       out_[r + static_cast<std::size_t>(j)][k] =
           std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;
@@ -487,8 +495,10 @@ void Fusing::begin_check() {
     if (row_[i] >= 0) check_.rows.push_back(row_[i]);
   const fusion::Array array = array_of(learnt_);
   const Eigen::MatrixXd h = array.h();
-  if (array.one_common_input() && array.channels >= 3)
+  if (array.one_common_input() && array.channels >= 3) {
     check_.readings.emplace(array.channels, instants_->info().count);
+    if (entry_->description->withstands == 0) check_.doubt.emplace(learnt_readings());
+  }
   check_.steps.emplace(h(check_.rows, Eigen::all), instants_->info().count);
   // The sum of two sensors' noises is comparable only where the same two are there.
   if (!check_.steps->identifiable() && check_.rows.size() < sensor_of_.size()) check_.steps.reset();
@@ -508,16 +518,20 @@ void Fusing::check_noise() {
   warn_of_noise(names, learnt, check_.steps->result(), result_.warnings);
 }
 
+detail::ReadingMeter::Readings Fusing::learnt_readings() const {
+  detail::ReadingMeter::Readings out;
+  for (const std::size_t i : sensor_of_) out.push_back(learnt_.sensors[i].reading);
+  return out;
+}
+
 void Fusing::check_readings() {
   if (!check_.readings) return;
   std::vector<std::string> names, units;
-  std::vector<std::optional<LearntSensor::Reading>> learnt;
   for (const std::size_t i : sensor_of_) {
     names.push_back(learnt_.sensors[i].name);
     units.push_back(result_.sensors[i].unit);
-    learnt.push_back(learnt_.sensors[i].reading);
   }
-  detail::warn_of_changes(check_.readings->changes(learnt),
+  detail::warn_of_changes(check_.readings->changes(learnt_readings()),
                           names,
                           units,
                           {0, instants_->info().rate_hz},

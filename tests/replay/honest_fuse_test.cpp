@@ -176,3 +176,22 @@ TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log i
     CHECK_THAT(places, !Contains("a: up") && !Contains("c: up") && !Contains("d: up"));
   }
 }
+
+TEST_CASE(
+    "fuse: where a sensor reads otherwise, the standard deviation of methods that follow it covers "
+    "what it does") {
+  HonestBench bench;
+  using Spoil = double (*)(double, int);
+  const std::pair<const char*, Spoil> kinds[] = {
+      {"offset", [](double y, int) { return y + 2; }},
+      {"sign", [](double y, int) { return -y; }},
+      {"from the middle", [](double y, int k) { return k < 6000 ? y : y + 5; }}};
+  for (const auto& [kind, spoil] : kinds)
+    for (const char* algorithm : {"least-squares", "inverse-variance"}) {
+      INFO(kind << ", " << algorithm);
+      KeptColumns kept;
+      bench.fuse_log(honest_log(7, spoil), algorithm, kept);
+      CHECK(coverage(kept) >= 0.9);
+      CHECK(coverage(kept) < 1);
+    }
+}

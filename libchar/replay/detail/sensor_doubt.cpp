@@ -1,0 +1,58 @@
+#include "libchar/replay/detail/sensor_doubt.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/fusion/algorithm.hpp"
+
+namespace libchar::detail {
+namespace {
+
+constexpr double kMemory = 1.0 / 32;
+// Beyond what is usual of a block of 256 or 64 instants:
+constexpr double kDoubtedMean = 1.5;   // of its rms
+constexpr double kDoubtedUsual = 2;    // of its mean
+constexpr double kDoubtedScatter = 2;  // of its rms
+
+}  // namespace
+
+SensorDoubt::SensorDoubt(std::vector<std::optional<LearntSensor::Reading>> learnt)
+    : learnt_(std::move(learnt)), mean_(learnt_.size()), square_(learnt_.size()) {
+  for (std::size_t i = 0; i < learnt_.size(); ++i)
+    if (learnt_[i]) square_[i] = learnt_[i]->usual_rms * learnt_[i]->usual_rms;
+}
+
+double SensorDoubt::instant(const Eigen::MatrixXd& samples, Eigen::Index at, double estimate) {
+  sorted_.clear();
+  for (const double y : samples.col(at))
+    if (fusion::usable(y)) sorted_.push_back(y);
+  if (sorted_.size() < 3) return 0;
+  const double u = median_in_place(sorted_);
+  if (std::isfinite(estimate)) away_ += kMemory * ((estimate - u) * (estimate - u) - away_);
+  bool doubted = false;
+  for (std::size_t i = 0; i < learnt_.size(); ++i) {
+    const double y = samples(static_cast<Eigen::Index>(i), at);
+    if (!learnt_[i] || !fusion::usable(y)) continue;
+    const LearntSensor::Reading& usual = *learnt_[i];
+    const double e = y - u - usual.offset - usual.gain * u;
+    mean_[i] += kMemory * (e - mean_[i]);
+    square_[i] += kMemory * (e * e - square_[i]);
+    doubted = doubted ||
+              std::abs(mean_[i]) >
+                  std::max(kDoubtedMean * usual.usual_rms, kDoubtedUsual * usual.usual_mean) ||
+              std::sqrt(square_[i]) > kDoubtedScatter * usual.usual_rms;
+  }
+  return doubted ? away_ : 0;
+}
+
+const std::vector<double>& SensorDoubt::push(const Eigen::MatrixXd& samples,
+                                             const Eigen::VectorXd& estimates) {
+  extra_.resize(static_cast<std::size_t>(samples.cols()));
+  for (Eigen::Index k = 0; k < samples.cols(); ++k)
+    extra_[static_cast<std::size_t>(k)] = instant(samples, k, estimates[k]);
+  return extra_;
+}
+
+}  // namespace libchar::detail
