@@ -26,6 +26,7 @@
 #include "libchar/replay/detail/plan/plan_sentences.hpp"
 #include "libchar/replay/detail/plan/reading_meter.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
+#include "libchar/replay/detail/plan/tilt_check.hpp"
 #include "libchar/replay/detail/tracks/run_tracks.hpp"
 #include "libchar/replay/view/ranking.hpp"
 
@@ -249,6 +250,7 @@ class Replay {
   }
 
   void watch_sensors(const Eigen::MatrixXd& samples) {
+    if (watch_.tilt) watch_.tilt->push(samples);
     if (watch_.steps) with_live(samples, [this](const auto& live) { watch_.steps->push(live); });
     watch_readings(samples);
   }
@@ -283,6 +285,7 @@ class Replay {
     ++passes_;
     if (workspace_.estimates != nullptr) begin_estimates();
     const fusion::Array live = subset(plan_.array, plan_.live);
+    if (plan_.array.tilt) watch_.tilt.emplace(*plan_.array.tilt, instants_.info().rate_hz);
     if (!scene_.tilt) watch_.steps.emplace(live.h(), plan_.run_to - plan_.run_from);
     if (!scene_.tilt) detection_.emplace(plan_, instants_.source().known_faults());
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
@@ -431,6 +434,7 @@ class Replay {
   struct {
     std::optional<StepNoiseMeter> steps;
     std::optional<detail::ReadingMeter> readings;
+    std::optional<detail::TiltCheck> tilt;
   } watch_;
   std::optional<DetectionSweep> detection_;
   RunFrame frame_, optimum_frame_;
@@ -649,6 +653,7 @@ ReplayResult Replay::collect() {
   add_tracks(out);
   if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, out.end_s());
   if (watch_.steps) note_step_noise(watch_.steps->result(), learnt_);
+  if (watch_.tilt) watch_.tilt->tell(out.warnings);
   if (watch_.readings) {
     note_readings(watch_.readings->result(), learnt_);
     tell_readings(out);

@@ -178,10 +178,10 @@ def named(*names):
             "bc")) + "reference: ref\n")
 
 
-def tilt(folder):
+def tilt(folder, sign=1):
     angle = [1.2 * math.sin(i / 100) for i in range(N_ROWS)]
     rate = [1.2 * math.cos(i / 100) for i in range(N_ROWS)]
-    made = {"g[rad/s]": [v + 0.02 + w for v, w in zip(rate, noise(N_ROWS, 0.02, 1))],
+    made = {"g[rad/s]": [sign * v + 0.02 + w for v, w in zip(rate, noise(N_ROWS, 0.02, 1))],
             "x[m/s^2]": [9.80665 * math.sin(v) + w for v, w in zip(angle, noise(N_ROWS, 0.1, 2))],
             "z[m/s^2]": [9.80665 * math.cos(v) + w for v, w in zip(angle, noise(N_ROWS, 0.1, 3))], "angle[rad]": angle}
     table(folder, made)
@@ -235,6 +235,7 @@ INPUTS = {
                                           n=20000)),
     "faults_not_kept": asked(restless),
     "input_repeats": asked(scene(modelled(""), "kalman-takens", change=periodic)),
+    "tilt_contradicts": asked(lambda folder: tilt(folder, sign=-1)),
     "tilt_tuned": asked(tilt),
     "looks_ahead": asked(scene(modelled(f", random_walk: {{value: {N}}}"), "virtual-sensor", SMOOTHED)),
     "no_drift": asked(scene(modelled(""), "virtual-sensor")),

@@ -1,0 +1,70 @@
+// Signs, axes and units of a tilt, judged by the gyroscope against the direction of gravity.
+#include "libchar/replay/detail/plan/tilt_check.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+using Catch::Contains;
+
+namespace {
+
+struct Instant {
+  double rate = 0, x = 0, z = 0;
+};
+
+/// What is said of 200 s at 100 Hz of a tilt that swings by `swing` rad, each instant changed by `change`; "": nothing.
+std::string said(double swing,
+                 const std::function<void(Instant&)>& change,
+                 double disturbance = 0) {
+  test::Gaussian normal(5);
+  Eigen::MatrixXd samples(3, 20000);
+  double wind = 0;
+  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+    const double t = 0.01 * static_cast<double>(k), w = 2 * M_PI * 0.11;
+    const double angle = swing * std::sin(w * t);
+    wind += 0.05 * (normal() - wind);
+    Instant now{swing * w * std::cos(w * t) + 0.05 + 0.01 * normal(),
+                9.81 * std::sin(angle) + 0.1 * normal() + disturbance * wind,
+                9.81 * std::cos(angle) + 0.1 * normal()};
+    change(now);
+    samples.col(k) << now.rate, now.x, now.z;
+  }
+  detail::TiltCheck check({0, 1, 2}, 100);
+  // Blocks of any length tell the same.
+  check.push(samples.leftCols(777));
+  check.push(samples.rightCols(samples.cols() - 777));
+  Findings warnings;
+  check.tell(warnings);
+  const Finding* found = warnings.find("tilt_contradicts");
+  return found == nullptr ? "" : found->sentence;
+}
+
+}  // namespace
+
+TEST_CASE("tilt check: signs, exchanged axes, units and another axis are told") {
+  CHECK_THAT(said(0.8, [](Instant& i) { i.rate = -i.rate; }), Contains("the other way"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.x = -i.x; }), Contains("the other way"));
+  CHECK_THAT(said(0.8, [](Instant& i) { std::swap(i.x, i.z); }), Contains("the other way"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.rate *= 57.29578; }), Contains("57.3 times"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.rate = 0.01 * std::sin(1000 * i.z); }),
+             Contains("another axis"));
+}
+
+TEST_CASE(
+    "tilt check: a right set-up is silent, also at rest, with an offset, in other units and when "
+    "shaken") {
+  const auto as_it_is = [](Instant&) {};
+  CHECK(said(0.8, as_it_is).empty());
+  CHECK(said(0, as_it_is).empty());
+  CHECK(said(0.8, as_it_is, 10).empty());
+  CHECK(said(0.8, [](Instant& i) { i.rate += 0.3; }).empty());
+  CHECK(said(0.8, [](Instant& i) {
+          i.x /= 9.81;
+          i.z /= 9.81;
+        }).empty());
+}
