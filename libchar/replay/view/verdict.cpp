@@ -81,9 +81,15 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
         std::count_if(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
           return a.ran && !a.bound && std::isfinite(a.rmse) && a.label != best.label;
         });
-    return others == 0 ? "No other method has a score."
-                       : "Every other method is worse, by more than one per cent, and the record "
-                         "is long enough to tell.";
+    const bool unscored =
+        std::any_of(r.algorithms.begin(), r.algorithms.end(), [](const AlgorithmResult& a) {
+          return a.ran && !a.bound && !std::isfinite(a.rmse);
+        });
+    if (others == 0) return "No other method has a score.";
+    return fmt::format(
+        "Every other method{} is worse, by more than one per cent, and the record is long enough "
+        "to tell.",
+        unscored ? " with a score" : "");
   }
   const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
   equals.resize(equals.size() - more);

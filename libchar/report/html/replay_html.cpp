@@ -321,7 +321,7 @@ std::string scores_note(const ReplayView& view) {
          " on this run; a method that follows changes may be below it. “× best method”: interval "
          "of "
          "the ratio of RMSEs, from what both saw at the same time; when it holds 1 the difference "
-         "is not resolved. "
+         "is not resolved, unless the error is larger in every stretch of the run. "
          "Converged: from here on the window RMS stays within a tenth of its final level. Bounds "
          "look at the reference of the run itself: they are for comparison. A click on a column's "
          "head sorts by it.</p>\n";
