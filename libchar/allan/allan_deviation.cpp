@@ -439,7 +439,7 @@ AllanCurve allan_deviation(std::span<const double> record,
   curve.used = rate_samples(used.size());
   const auto factors = averaging_factors(options, dt_s, curve.used, curve.notes);
   if (curve.used < f.span(1)) too_short(f, curve.samples);
-  const std::uint64_t reach = total && !factors.empty() ? factors.back() : 0;
+  const std::size_t reach = total && !factors.empty() ? detail::in_memory(factors.back()) : 0;
   const int cores = processors_given();
   parallel::Threads arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
   arena.run([&] {

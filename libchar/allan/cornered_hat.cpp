@@ -27,6 +27,7 @@
 #include <cmath>
 
 #include "libchar/allan/detail/equivalent_dof.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 
 namespace libchar {
@@ -249,7 +250,8 @@ CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> dif
     std::uint64_t terms = like.terms;
     for (std::size_t i = 0; i < 3;
          ++i) {  // device i is in the differences i and i - 1, with either sign
-      const MeanProduct product = mean_product(x[i], x[(i + 2) % 3], like.m, like.tau_s);
+      const MeanProduct product =
+          mean_product(x[i], x[(i + 2) % 3], detail::in_memory(like.m), like.tau_s);
       v[i] = -product.value;
       terms = std::min(terms, product.terms);
     }

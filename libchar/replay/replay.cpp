@@ -243,7 +243,7 @@ class Replay {
           std::min<std::int64_t>(instants_.instant_at(fault.to_s), first + samples.cols());
       if (from < to)
         healthy_.row(static_cast<Eigen::Index>(fault.sensor))
-            .segment(from - first, to - from)
+            .segment(static_cast<Eigen::Index>(from - first), static_cast<Eigen::Index>(to - from))
             .setConstant(kMissing);
     }
     return healthy_;
@@ -294,7 +294,8 @@ class Replay {
       const Eigen::MatrixXd& healthy = without_faults(b.first, b.samples);
       for (AlgorithmRun& run : optimum_) run.run(healthy);
       const std::int64_t done = b.first - plan_.run_from;
-      const Eigen::Index skip = std::clamp<std::int64_t>(plan_.warm_up - done, 0, b.samples.cols());
+      const auto skip = static_cast<Eigen::Index>(
+          std::clamp<std::int64_t>(plan_.warm_up - done, 0, b.samples.cols()));
       for (AlgorithmRun& run : runs_) run.score(done, b.truth, skip);
       for (AlgorithmRun& run : optimum_) run.score(done, b.truth, skip);
       for (const auto& blind : blind_)

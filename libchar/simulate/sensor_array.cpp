@@ -11,6 +11,7 @@
 #include <numbers>
 #include <set>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/process/work.hpp"
@@ -91,7 +92,7 @@ struct LowPass {
   }
 };
 
-void keep_every(std::span<const double> fine, std::uint64_t step, std::span<double> coarse) {
+void keep_every(std::span<const double> fine, std::size_t step, std::span<double> coarse) {
   for (std::size_t k = 0; k < coarse.size(); ++k) coarse[k] = fine[k * step];
 }
 
@@ -171,7 +172,7 @@ struct ArraySimulator::State {
   }
 
   void make_truth(std::size_t rows) {
-    const std::size_t fine = rows * spec.oversampling;
+    const std::size_t fine = rows * detail::in_memory(spec.oversampling);
     std::vector<std::span<const double>> earlier;
     for (std::size_t j = 0; j < signals.size(); ++j) {
       fine_truth[j].resize(fine);
@@ -182,14 +183,14 @@ struct ArraySimulator::State {
       fine_temperature.resize(fine);
       temperature->next(fine_temperature, earlier);
       coarse_temperature.resize(rows);
-      keep_every(fine_temperature, spec.oversampling, coarse_temperature);
+      keep_every(fine_temperature, detail::in_memory(spec.oversampling), coarse_temperature);
     }
   }
 
   void run_sensor(std::size_t i, std::size_t rows) {
     const std::vector<double>& h = spec.sensors[i].h;
     std::vector<double>& y = fine_sensor[i];
-    y.assign(rows * spec.oversampling, 0.0);
+    y.assign(rows * detail::in_memory(spec.oversampling), 0.0);
     for (std::size_t j = 0; j < h.size(); ++j) {
       if (h[j] == 0) continue;
       const std::vector<double>& x = fine_truth[j];
@@ -201,7 +202,7 @@ struct ArraySimulator::State {
     }
     chains[i].run(y, fine_temperature);
     sensor[i].resize(rows);
-    keep_every(y, spec.oversampling, sensor[i]);
+    keep_every(y, detail::in_memory(spec.oversampling), sensor[i]);
     faults[i].apply(sensor[i]);
   }
 
@@ -209,7 +210,7 @@ struct ArraySimulator::State {
     for (std::size_t j = 0; j < truth.size(); ++j) {
       if (!truth_low_pass.empty()) truth_low_pass[j].run(fine_truth[j]);
       truth[j].resize(rows);
-      keep_every(fine_truth[j], spec.oversampling, truth[j]);
+      keep_every(fine_truth[j], detail::in_memory(spec.oversampling), truth[j]);
     }
   }
 };

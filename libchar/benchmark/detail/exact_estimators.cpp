@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/numeric/whole.hpp"
+
 namespace libchar {
 namespace {
 
@@ -49,7 +51,7 @@ Exact reflected_window(const std::vector<Exact>& series, std::size_t i, std::siz
   return sum / static_cast<Exact>(6 * m) / static_cast<Exact>(m * m);
 }
 
-Exact exact_extended(const std::vector<Exact>& x, const DeviationRow& row, std::uint64_t m) {
+Exact exact_extended(const std::vector<Exact>& x, const DeviationRow& row, std::size_t m) {
   std::vector<Exact> series = x;
   if (!row.of_sum) {
     for (std::size_t i = 0; i + 1 < x.size(); ++i) series[i] = x[i + 1] - x[i];
@@ -68,7 +70,7 @@ Exact exact_extended(const std::vector<Exact>& x, const DeviationRow& row, std::
   return std::sqrt(v) / (row.of_sum ? Exact(m) : 1);
 }
 
-Exact exact_parabolic(const std::vector<Exact>& x, std::uint64_t m) {
+Exact exact_parabolic(const std::vector<Exact>& x, std::size_t m) {
   Exact sum = 0;
   const std::size_t terms = x.size() - 2 * m;
   for (std::size_t i = 0; i < terms; ++i) {
@@ -82,7 +84,7 @@ Exact exact_parabolic(const std::vector<Exact>& x, std::uint64_t m) {
   return std::sqrt(72 * sum / static_cast<Exact>(terms)) / (factor * factor * factor);
 }
 
-Exact exact_theo1(const std::vector<Exact>& x, std::uint64_t m) {
+Exact exact_theo1(const std::vector<Exact>& x, std::size_t m) {
   Exact sum = 0;
   const std::size_t half = m / 2, starts = x.size() - m;
   for (std::size_t c = half; c < half + starts; ++c)
@@ -93,7 +95,7 @@ Exact exact_theo1(const std::vector<Exact>& x, std::uint64_t m) {
   return std::sqrt(sum / (Exact(0.75) * static_cast<Exact>(starts))) / Exact(m);
 }
 
-Exact exact_theo(const std::vector<Exact>& x, DeviationType type, std::uint64_t m) {
+Exact exact_theo(const std::vector<Exact>& x, DeviationType type, std::size_t m) {
   const auto allan = [&](std::size_t factor) {
     Exact sum = 0;
     const std::size_t terms = x.size() - 2 * factor;
@@ -113,7 +115,7 @@ Exact exact_theo(const std::vector<Exact>& x, DeviationType type, std::uint64_t 
 }
 
 /// The offset counts here.
-Exact exact_interval(std::span<const double> y, DeviationType type, std::uint64_t m) {
+Exact exact_interval(std::span<const double> y, DeviationType type, std::size_t m) {
   std::vector<Exact> x{0};
   for (const double v : y) x.push_back(x.back() + Exact(v));
   Exact most = 0, squares = 0;
@@ -138,7 +140,7 @@ std::vector<Exact> without_mean(std::span<const double> y) {
 Exact exact_of_family(std::span<const double> y,
                       double dt_s,
                       const DeviationRow& row,
-                      std::uint64_t m) {
+                      std::size_t m) {
   const std::vector<Exact> x = phase_of(y, 0);
   const Exact dt(dt_s);
   switch (row.family) {
@@ -158,8 +160,9 @@ Exact exact_of_family(std::span<const double> y,
 Exact exact_deviation(std::span<const double> y,
                       double dt_s,
                       DeviationType type,
-                      std::uint64_t m,
+                      std::uint64_t factor,
                       std::uint64_t stride) {
+  const std::size_t m = detail::in_memory(factor);
   const DeviationRow& row = deviation_row(type);
   if (row.family != DeviationFamily::differences) return exact_of_family(y, dt_s, row, m);
   const std::size_t reflected = row.reflected ? m - 1 : 0;

@@ -1,5 +1,6 @@
 #include "libchar/benchmark/detail/records.hpp"
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 
 namespace libchar {
@@ -43,13 +44,13 @@ std::vector<double> mean_of_records(const BenchSignal& signal,
   ArraySimulator simulator(simulation, 1);
   constexpr std::size_t kRows = 65536;
   std::vector<double> out;
-  out.reserve(signal.samples);
+  out.reserve(detail::in_memory(signal.samples));
   const double share = 1 / static_cast<double>(sensors);
   for (auto columns = simulator.next(kRows); !columns.empty() && !columns[0].empty();
        columns = simulator.next(kRows))
     for (std::size_t i = 0; i < columns[0].size(); ++i) {
       double sum = 0;
-      for (std::uint64_t s = 0; s < sensors; ++s) sum += columns[s][i];
+      for (std::size_t s = 0; s < sensors; ++s) sum += columns[s][i];
       out.push_back(sum * share);
     }
   return out;

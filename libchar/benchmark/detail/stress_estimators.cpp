@@ -15,6 +15,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/benchmark/detail/stress_cells.hpp"
 #include "libchar/core/numeric/moments.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/random.hpp"
 #include "libchar/spectrum/fft.hpp"
@@ -259,7 +260,8 @@ void stress_welch(const StressRecord& record, StressCell& cell) {
     return judge_near(level(spectrum), level(spectrum_of(record.whole)), 1.5, cell);
   }
   judge_digits(
-      right_digits_together(spectrum.value, exact_welch(record.y, kStressRate, spectrum.segment)),
+      right_digits_together(
+          spectrum.value, exact_welch(record.y, kStressRate, detail::in_memory(spectrum.segment))),
       stated(kSpectrumDigits, record),
       cell);
 }
@@ -357,7 +359,7 @@ void stress_long_stream(
   Exact first = 0;
   for (std::uint64_t done = 0; done < kDriftSamples; done += block.size()) {
     progress.update(static_cast<double>(done) / kDriftSamples, "stress: " + cell.input);
-    block.resize(std::min<std::uint64_t>(kBlock, kDriftSamples - done));
+    block.resize(std::min(kBlock, detail::in_memory(kDriftSamples - done)));
     noise.fill_normal(block);
     for (std::size_t i = 0; i < block.size(); ++i)
       block[i] += offset + drift * static_cast<double>(done + i) / kDriftSamples;

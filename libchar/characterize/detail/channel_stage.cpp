@@ -4,6 +4,8 @@
 #include <new>
 #include <utility>
 
+#include "libchar/core/numeric/whole.hpp"
+
 namespace libchar {
 
 ChannelStage::ChannelStage(const CharacterizeOptions& options,
@@ -39,7 +41,7 @@ void ChannelStage::end_leaf(bool last) {
     stage_->make_rate(rate);
     spectrum_->push(rate);
   }
-  const std::size_t rows = last ? leaf_.size() : stage_->rows();
+  const std::size_t rows = last ? leaf_.size() : detail::in_memory(stage_->rows());
   tree_.add(
       {0, leaves_++, stage_->take(std::span(leaf_).first(rows), last, std::exchange(meters_, {}))});
   meters_.traces = options_->wanted.quality;

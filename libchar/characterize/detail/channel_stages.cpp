@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
@@ -52,7 +53,7 @@ std::size_t ChannelStages::channels_at_once(const LogInfo& so_far) const {
   const std::uint64_t most_rows = so_far.samples > 0 ? so_far.samples : so_far.bytes / channels;
   const std::uint64_t each = std::min(kChannelBytes, (most_rows + 1) * sizeof(double));
   const std::uint64_t some = std::min(options_.memory_bytes, kMostOfPass) / each;
-  return std::clamp<std::size_t>(some, 1, channels);
+  return std::clamp<std::size_t>(detail::in_memory(some), 1, channels);
 }
 
 void ChannelStages::begin(const LogInfo& so_far) {
@@ -66,7 +67,7 @@ void ChannelStages::begin(const LogInfo& so_far) {
     const bool temperature = !options_.temperature.empty() && c == temperature_index_;
     stages_.emplace_back(
         temperature ? temperature_options_ : options_, workspace_, !needs_all_samples_.empty());
-    stages_.back().reserve(so_far.bytes / std::max<std::size_t>(channels, 1));
+    stages_.back().reserve(detail::in_memory(so_far.bytes / std::max<std::size_t>(channels, 1)));
   }
   arena_.limit_to(threads_beside_reading(so_far, options_.reading.threads));
 }

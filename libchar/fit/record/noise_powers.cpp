@@ -38,7 +38,7 @@ constexpr std::array kSeriesTerms = {Term::white, Term::flicker, Term::walk, Ter
 /// What the noise terms of theta = 1 put into the coefficients of a series of a length, and into its bins: the same whatever is taken out
 /// of the series.
 struct SeriesUnits {
-  std::uint64_t points = 0, per_point = 0;
+  std::size_t points = 0, per_point = 0;
   double step_s = 0;
   bool ends_free = false;
   bool of(const EventSeries& series) const {

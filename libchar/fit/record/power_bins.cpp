@@ -9,6 +9,7 @@
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/fit/detail/record/record_powers.hpp"
 
@@ -27,7 +28,7 @@ struct LineClip {
   std::uint64_t count = 0;    ///< coefficients left out, times nothing: not weighted by pooling
 };
 
-constexpr std::uint64_t kLowest = 32;
+constexpr std::size_t kLowest = 32;
 constexpr double kFalseAlarm = 1.54e-8;  // P(chi^2_1 > 32)
 
 LIBCHAR_LANES double largest_lanes(const double* x, std::size_t n) {
@@ -56,7 +57,7 @@ constexpr InLanes<count_below_lanes> count_below;
 /// the count of coefficients below a level says enough.
 class LocalFloor {
  public:
-  LocalFloor(const std::vector<double>& mean, std::uint64_t first, double chi_median)
+  LocalFloor(const std::vector<double>& mean, std::size_t first, double chi_median)
       : mean_(&mean), chi_median_(chi_median) {
     for (std::size_t lo = 0; lo < mean.size();) {
       const std::size_t width = std::clamp<std::size_t>((lo + first) / 8, 64, 2048);
@@ -71,8 +72,8 @@ class LocalFloor {
   /// Lines between two medians; the first and the last go on to the ends.
   std::size_t pieces() const { return std::max<std::size_t>(1, log_k_.size() - 1); }
   /// First coefficient of the piece after this one.
-  std::uint64_t end_of(std::size_t piece) const {
-    return static_cast<std::uint64_t>(std::exp(log_k_[piece + 1])) + 1;
+  std::size_t end_of(std::size_t piece) const {
+    return static_cast<std::size_t>(std::exp(log_k_[piece + 1])) + 1;
   }
   double at(std::size_t piece, std::uint64_t k) {
     const std::size_t next = std::min(piece + 1, log_k_.size() - 1);
@@ -130,7 +131,7 @@ class LocalFloor {
 /// Median of the coefficients beside one, its nearest left out: near the zeros of a filter, and
 /// where the two ends of a smooth record make every second coefficient large, the floor bends
 /// faster than its stretches tell.
-double median_beside(const std::vector<double>& mean, std::size_t i, std::uint64_t first) {
+double median_beside(const std::vector<double>& mean, std::size_t i, std::size_t first) {
   constexpr std::size_t kNearest = 2;
   const std::size_t reach = std::clamp<std::size_t>((first + i) / 64, 16, 128);
   std::vector<double> beside;
@@ -142,7 +143,7 @@ double median_beside(const std::vector<double>& mean, std::size_t i, std::uint64
 }
 
 /// Marks a line and what it leaks into.
-void clip_around(std::size_t i, double excess, std::uint64_t first, std::vector<char>& clipped) {
+void clip_around(std::size_t i, double excess, std::size_t first, std::vector<char>& clipped) {
   const double reach = std::min({std::sqrt(10 * excess),
                                  static_cast<double>(first + i) / 4,
                                  static_cast<double>(clipped.size()) / 32});
@@ -155,20 +156,19 @@ void clip_around(std::size_t i, double excess, std::uint64_t first, std::vector<
 
 // `mean[i]` is the mean square of coefficient first + i over `pooled` transforms. Coefficients
 // below 32 are never clipped.
-LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::uint64_t pooled) {
+LineClip clip_lines(const std::vector<double>& mean, std::size_t first, std::uint64_t pooled) {
   const double dof = static_cast<double>(pooled);
   // Never nearer than 1.5: the floor itself is only that good where the spectrum bends.
   const double limit = std::max(1.5, chi_square_upper_quantile(kFalseAlarm, dof) / dof);
   const double chi_median = chi_square_quantile(0.5, dof) / dof;
   LocalFloor floor(mean, first, chi_median);
   LineClip clip;
-  const std::uint64_t end = first + mean.size();
-  std::uint64_t k = std::max(first, kLowest);
+  const std::size_t end = first + mean.size();
+  std::size_t k = std::max(first, kLowest);
   for (std::size_t piece = 0; piece < floor.pieces(); ++piece) {
-    const std::uint64_t next =
-        piece + 1 < floor.pieces() ? std::min(end, floor.end_of(piece)) : end;
+    const std::size_t next = piece + 1 < floor.pieces() ? std::min(end, floor.end_of(piece)) : end;
     if (k >= next) continue;
-    const double top = largest(mean.data() + (k - first), static_cast<std::size_t>(next - k));
+    const double top = largest(mean.data() + (k - first), next - k);
     if (floor.is_above(piece, top / limit)) {
       k = next;
       continue;
@@ -194,17 +194,18 @@ LineClip clip_lines(const std::vector<double>& mean, std::uint64_t first, std::u
 /// A sine spends the coefficients about its own.
 void clip_cycles(const PooledPower& power, LineClip& clip) {
   clip.clipped.resize(power.mean.size(), 0);
+  const std::size_t first = detail::in_memory(power.first);
   for (const PooledPower::Cycle& cycle : power.cycles) {
-    const auto place = static_cast<std::uint64_t>(std::llround(cycle.place));
-    for (std::uint64_t k = std::max(power.first, place - 1); k <= place + 1; ++k)
-      if (k < power.first + power.mean.size()) clip.clipped[k - power.first] = 1;
+    const auto place = static_cast<std::size_t>(std::llround(cycle.place));
+    for (std::size_t k = std::max(first, place - 1); k <= place + 1; ++k)
+      if (k < first + power.mean.size()) clip.clipped[k - first] = 1;
   }
 }
 
 void append_without_cycles(const PooledPower& power, double rate_hz, ClippedBins& out) {
   PooledPower rest = power;
   rest.mean = power.without_cycles;
-  LineClip clip = clip_lines(rest.mean, rest.first, rest.pooled);
+  LineClip clip = clip_lines(rest.mean, detail::in_memory(rest.first), rest.pooled);
   out.clipped += clip.count;
   clip_cycles(power, clip);
   append_power_bins(rest, rate_hz, clip.clipped, out.bins);
@@ -265,7 +266,7 @@ ClippedBins clipped_power_bins(std::span<const PooledPower> powers, double rate_
       append_without_cycles(power, rate_hz, out);
       continue;
     }
-    const LineClip clip = clip_lines(power.mean, power.first, power.pooled);
+    const LineClip clip = clip_lines(power.mean, detail::in_memory(power.first), power.pooled);
     out.clipped += clip.count;
     append_power_bins(power, rate_hz, clip.clipped, out.bins);
   }

@@ -37,6 +37,7 @@
 #include <utility>
 
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fit/detail/record/mean_series.hpp"
 #include "libchar/fit/detail/record/record_powers.hpp"
 #include "libchar/spectrum/fft.hpp"
@@ -110,7 +111,7 @@ void append_means(Segment segment, bool alone, std::vector<PooledPower>& out) {
 /// Per transform, the energy of events over `count` blocks that follow each other: of `length`
 /// means of `p` samples, whose places are `stretch` times as far apart as what is present.
 std::vector<double> energy_of(
-    const Shape& shape, std::uint64_t count, std::uint64_t length, double p, double stretch) {
+    const Shape& shape, std::uint64_t count, std::size_t length, double p, double stretch) {
   std::vector<double> energy(length, 0.0), values(length);
   Dct plan(length);
   const double block = static_cast<double>(length) * p * stretch;
@@ -138,9 +139,10 @@ std::vector<double> energy_of(
 
 /// The energy of events in what was pooled of whole blocks.
 void add_energy(const Shape& shape, double p, double stretch, PooledPower& power) {
-  const std::vector<double> energy = energy_of(shape, power.pooled, power.length, p, stretch);
+  const std::vector<double> energy =
+      energy_of(shape, power.pooled, detail::in_memory(power.length), p, stretch);
   for (std::size_t i = 0; i < power.mean.size(); ++i)
-    power.of_events.push_back(energy[power.first + i]);
+    power.of_events.push_back(energy[detail::in_memory(power.first) + i]);
 }
 
 /// Runs of one segment into one.
@@ -231,7 +233,7 @@ void PowerPart::State::cut_rest() {
   add_means(pending);
   std::span<const double> rest = pending;
   for (std::size_t piece = 0; piece < kPieceLengths; ++piece) {
-    const std::uint64_t length = piece_length(piece);
+    const std::size_t length = detail::in_memory(piece_length(piece));
     if (rest.size() < length) continue;
     Dct transform(length);
     add_squares(transform.transform(rest.first(length)), sums.pieces[piece]);

@@ -231,7 +231,7 @@ RecordSums record_sums(std::span<const double> record, bool remedies) {
   LeafTree<RecordStage> tree(stage);
   for (std::uint64_t leaf = 0; !record.empty(); ++leaf) {
     const std::span<const double> samples =
-        record.first(std::min<std::uint64_t>(record.size(), kLeafSamples));
+        record.first(std::min<std::size_t>(record.size(), kLeafSamples));
     record = record.subspan(samples.size());
     const std::size_t missing = count_missing(samples);
     LeafKind kind{record.empty(), remedies, missing == 0};

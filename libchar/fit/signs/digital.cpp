@@ -23,7 +23,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::uint64_t kFewestRuns = 64, kLongestHold = 1024;
+constexpr std::size_t kFewestRuns = 64, kLongestHold = 1024;
 constexpr std::uint64_t kFewestAtRail = 8;
 constexpr double kMostAtRail =
     0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
@@ -48,7 +48,7 @@ DigitalSums::AtRail rail_of(std::span<const double> record,
 /// The length that a share of the runs does not pass.
 std::uint64_t quantile(const ValueRuns& runs, double share) {
   double sum = 0;
-  for (std::uint64_t length = 1; length <= kLongestHold; ++length)
+  for (std::size_t length = 1; length <= kLongestHold; ++length)
     if ((sum += runs.of_length[length]) >= share * runs.runs) return length;
   return kLongestHold;
 }
@@ -66,7 +66,8 @@ double unevenness(const ValueRuns& runs) {
 ValueRuns runs_of_values(std::span<const double> record) {
   ValueRuns runs;
   runs.of_length.assign(kLongestHold + 1, 0.0);
-  std::uint64_t length = 1, since = 0;
+  std::size_t length = 1;
+  std::uint64_t since = 0;
   bool first = true;
   for (std::size_t t = 1; t < record.size(); ++t) {
     ++since;

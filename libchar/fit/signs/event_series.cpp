@@ -14,7 +14,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::uint64_t kFewest = 64;
+constexpr std::size_t kFewest = 64;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 bool transforms_fast(std::uint64_t n) {
@@ -73,17 +73,17 @@ std::span<const double> from_first_to_last(std::span<const double> record, doubl
 
 }  // namespace
 
-EventSeries event_series(std::span<const double> whole, double rate_hz, std::uint64_t points) {
+EventSeries event_series(std::span<const double> whole, double rate_hz, std::size_t points) {
   EventSeries series;
   double start = 0;
   const std::span<const double> record = from_first_to_last(whole, start);
-  const std::uint64_t most = std::max(points, kFewest);
-  series.per_point = std::max<std::uint64_t>(1, (record.size() + most - 1) / most);
+  const std::size_t most = std::max(points, kFewest);
+  series.per_point = std::max<std::size_t>(1, (record.size() + most - 1) / most);
   series.step_s = static_cast<double>(series.per_point) / rate_hz;
   series.start_s = start / rate_hz;
-  std::uint64_t n = record.size() / series.per_point;
+  std::size_t n = record.size() / series.per_point;
   while (n > kFewest && !transforms_fast(n)) --n;
-  for (std::uint64_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < n; ++i)
     series.value.push_back(mean_present(record.subspan(i * series.per_point, series.per_point)));
   while (!series.value.empty() && std::isnan(series.value.back())) series.value.pop_back();
   if (series.value.size() < kFewest)
@@ -126,7 +126,7 @@ std::vector<detail::Pause> detail::leave_out_pauses(EventSeries& series) {
   }
   if (pauses.empty()) return pauses;
   session_until(static_cast<double>(series.value.size()));
-  std::uint64_t n = joined.value.size();
+  std::size_t n = joined.value.size();
   if (n < kFewest) return {};
   while (n > kFewest && !transforms_fast(n)) --n;
   joined.value.resize(n);

@@ -14,7 +14,7 @@ struct EventSeries {
   std::vector<double> value;
   double start_s = 0;                ///< of the first value: the record may begin with missing ones
   double step_s = 0;                 ///< between values
-  std::uint64_t per_point = 1;       ///< samples averaged in a value
+  std::size_t per_point = 1;         ///< samples averaged in a value
   std::vector<Interval> unseen_s{};  ///< stretches that were missing, filled by straight lines
   bool ends_free =
       false;  ///< whatever phase noise puts into the first and the last value was taken out
@@ -46,6 +46,6 @@ double with_pauses(std::span<const Pause> pauses, double at_s);
 /// At most `points` means over the whole record; NaN samples are left out of them.
 EventSeries event_series(std::span<const double> record,
                          double rate_hz,
-                         std::uint64_t points = std::uint64_t{1} << 15U);
+                         std::size_t points = std::size_t{1} << 15U);
 
 }  // namespace libchar

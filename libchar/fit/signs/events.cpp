@@ -48,7 +48,7 @@ struct Search {
   const NoisePowers& powers;
   const EventOptions& options;
   SeriesGrid grid;
-  std::uint64_t margin = 0;
+  std::size_t margin = 0;
   std::vector<double> coefficients;       ///< k = 1..n-1 at [k-1]
   std::vector<EventShape> gaps;           ///< the longest missing stretches, as steps
   std::span<const detail::Pause> pauses;  ///< that are left out of the series
@@ -137,7 +137,7 @@ void leave_out_borders(const Search& search, StepScan& scan) {
   if (search.offset.empty()) return;
   for (const EventShape& offset : search.offset) {
     const auto at = static_cast<std::size_t>(offset.at);
-    const std::size_t from = at - std::min<std::size_t>(at, search.margin);
+    const std::size_t from = at - std::min(at, search.margin);
     for (std::size_t t = from; t < std::min(scan.score.size(), at + search.margin + 1); ++t)
       scan.score[t] = 0;
   }
@@ -496,14 +496,14 @@ EventSearch find_events(const EventSeries& whole,
   EventOptions options = asked;
   options.ramp =
       options.ramp && pauses.empty();  // it goes through the sessions, whose means are gone
-  const std::uint64_t n = series.value.size();
+  const std::size_t n = series.value.size();
   Dct dct(n);
   const std::span<const double> c = dct.transform(series.value);
   Search search{series,
                 powers,
                 options,
                 {n, series.per_point},
-                std::max<std::uint64_t>(8, n / 500),
+                std::max<std::size_t>(8, n / 500),
                 {},
                 gaps_of(series),
                 pauses};

@@ -27,6 +27,7 @@
 #include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {
@@ -63,7 +64,7 @@ void halve(std::vector<double>& values) {
 void SpikeScan::push(std::span<const double> samples) {
   // Place t needs the samples t, t+1 and t+2; `samples_` of them are gone.
   const auto sample = [&](std::uint64_t t) {
-    return t >= samples_ ? samples[t - samples_] : two_[2 - (samples_ - t)];
+    return t >= samples_ ? samples[detail::in_memory(t - samples_)] : two_[2 - (samples_ - t)];
   };
   const std::uint64_t end = samples_ + samples.size();
   for (; next_ + 2 < end; next_ += stride_) {
@@ -273,7 +274,8 @@ void SpikeCleaner::look_at_start() {
   const std::int64_t longest = std::min(kLongestRun, end() - kSpikeReach);
   for (std::int64_t count = longest; count >= 1; --count) {
     if (!(std::abs(at(count) - at(count - 1)) > limit)) continue;
-    std::vector<double> behind(held_.begin() + count, held_.begin() + count + kSpikeReach);
+    std::vector<double> behind(held_.begin() + static_cast<std::ptrdiff_t>(count),
+                               held_.begin() + static_cast<std::ptrdiff_t>(count + kSpikeReach));
     std::erase_if(behind, [](double value) { return !std::isfinite(value); });
     if (behind.size() < 8) continue;
     const double level = median_in_place(behind, Middle::upper);

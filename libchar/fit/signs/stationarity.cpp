@@ -27,6 +27,7 @@
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/numeric/random_effects.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/fit_result.hpp"
@@ -145,7 +146,7 @@ std::optional<OctaveTest> test_stretches(const Curves& stretches,
 }
 
 /// Means of `r` values; missing where half of them are.
-std::vector<double> means_of(std::span<const double> values, std::uint64_t r) {
+std::vector<double> means_of(std::span<const double> values, std::size_t r) {
   std::vector<double> means;
   for (std::size_t i = 0; i + r <= values.size(); i += r) {
     const auto part = values.subspan(i, r);
@@ -213,7 +214,7 @@ std::vector<OctaveTest> octaves_of(const Tested& record, const NoiseFit& fit) {
        {std::pair{kStretches, kWindows}, std::pair{kFewStretches, kFewWindows}}) {
     const std::uint64_t before = r;
     r = std::max(before, m / 8);
-    if (r > before) means = means_of(means, r / before);
+    if (r > before) means = means_of(means, detail::in_memory(r / before));
     const Curves stretches = coarse_curves(means, parts, r, record.dt_s, fit);
     for (; m * windows <= record.samples / parts; m *= 2)
       keep(test_stretches(stretches, m, inflation));
@@ -363,7 +364,7 @@ Stationarity test_stationarity(const FittedSums& sums,
   Tested tested{samples, 1 / rate_hz, {}, {}, means, sums.means.per_mean()};
   tested.curve_of_piece = [&] {
     const std::uint64_t length = std::max(sums.pieces.shortest, samples / kPieces);
-    return pyramid_deviation(std::vector<double>(length), 1 / rate_hz);
+    return pyramid_deviation(std::vector<double>(detail::in_memory(length)), 1 / rate_hz);
   };
   tested.pieces = [&](std::uint64_t m) {
     const auto octave = static_cast<std::size_t>(std::bit_width(m)) - 1;

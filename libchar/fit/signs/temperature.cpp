@@ -92,7 +92,7 @@ TemperatureSeries temperature_series(const TemperatureRecord& temperature,
   out.range = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < series.value.size(); ++i) {
     double sum = 0, count = 0;
-    for (std::uint64_t j = 0; j < series.per_point; ++j) {
+    for (std::size_t j = 0; j < series.per_point; ++j) {
       const std::size_t t = first + i * series.per_point + j;
       const double value = t < temperature.samples.size() ? temperature.samples[t] : std::nan("");
       if (!std::isfinite(value)) continue;

@@ -233,7 +233,7 @@ void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples, bool noted) {
   for (Eigen::Index done = 0, part = 0; done < all.cols(); done += part) {
     const auto so_far = static_cast<std::int64_t>(steps_) + done;
     const std::int64_t due = noted ? medians_.until_next(so_far) : all.cols();
-    part = std::min<Eigen::Index>(due, all.cols() - done);
+    part = static_cast<Eigen::Index>(std::min<std::int64_t>(due, all.cols() - done));
     seconds += accounted([&] {
       runner_->run(
           all.middleCols(done, part), x_.middleCols(done, part), variance_.middleCols(done, part));

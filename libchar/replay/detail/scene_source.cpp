@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/log/quality.hpp"
@@ -55,7 +56,7 @@ struct FirstReading final : BlockSink {
     }
     kept.resize(samples.channels.size());
     for (std::size_t c = 0; c < kept.size(); ++c) {
-      kept[c].resize(samples.first, kMissing);
+      kept[c].resize(detail::in_memory(samples.first), kMissing);
       kept[c].insert(kept[c].end(), samples.channels[c], samples.channels[c] + samples.rows);
     }
   }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/view/words.hpp"
@@ -110,7 +111,7 @@ ReplayReport::Algorithm algorithm_of(const ReplayResult& result, const Algorithm
   out.learns = view.learns;
   out.accepts_missing = description.needs.accepts_missing;
   for (const FoundFault& fault : out.faults)
-    out.found.push_back({sensor_name(result, fault.sensor),
+    out.found.push_back({sensor_name(result, detail::in_memory(fault.sensor)),
                          fault.kind,
                          kNone,
                          fault.from_s,
@@ -192,7 +193,7 @@ void add_facts(ReplayReport& out, const ReplayView& view) {
   out.preparation = scene.preparation;
   if (result.alignment) out.alignment = alignment_of(result);
   for (const SensorFault& fault : result.faults)
-    out.faults.push_back({sensor_name(result, fault.sensor),
+    out.faults.push_back({sensor_name(result, detail::in_memory(fault.sensor)),
                           std::string(name_of(fault.kind)),
                           fault.value,
                           fault.from_s,

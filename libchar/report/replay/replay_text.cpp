@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fusion/registry.hpp"
@@ -149,7 +150,7 @@ std::vector<ReportedUse> uses_of(const FuseResult& result) {
 std::vector<ReplayReport::Fault> faults_of(const FuseResult& result) {
   std::vector<ReplayReport::Fault> out;
   for (const FoundFault& fault : result.faults)
-    out.push_back({result.sensors[fault.sensor].name,
+    out.push_back({result.sensors[detail::in_memory(fault.sensor)].name,
                    fault.kind,
                    kNone,
                    fault.from_s,

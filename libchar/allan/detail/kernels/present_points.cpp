@@ -9,6 +9,7 @@
 #include "libchar/allan/detail/anchored_phase.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/kernels/missing_samples.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/readable.hpp"
 
@@ -52,7 +53,7 @@ struct Window {
   double mean = 0, present = 0;
 };
 
-Window window(const PresentSums& sums, std::uint64_t begin, std::uint64_t m) {
+Window window(const PresentSums& sums, std::size_t begin, std::size_t m) {
   const auto present = static_cast<double>(sums.present[begin + m] - sums.present[begin]);
   return {static_cast<double>(sums.sum[begin + m] - sums.sum[begin]) / present, present};
 }
@@ -61,14 +62,14 @@ Window window(const PresentSums& sums, std::uint64_t begin, std::uint64_t m) {
 // windows' means, order 1 (Allan) or 2 (Hadamard), of windows of m samples that the record holds.
 PresentTerms present_terms(const PresentSums& sums,
                            int order,
-                           std::uint64_t m,
-                           std::uint64_t first,
-                           std::uint64_t last,
-                           std::uint64_t stride) {
+                           std::size_t m,
+                           std::size_t first,
+                           std::size_t last,
+                           std::size_t stride) {
   const auto factor = static_cast<double>(m);
   double squares = 0, shortfall = 0, imbalance = 0;
   PresentTerms total;
-  for (std::uint64_t i = first; i < last; i += stride) {
+  for (std::size_t i = first; i < last; i += stride) {
     const Window a = window(sums, i, m), b = window(sums, i + m, m);
     const double uneven = (b.present - a.present) / factor;
     imbalance += uneven * uneven;
@@ -92,17 +93,17 @@ PresentTerms present_terms(const PresentSums& sums,
 }
 
 // Every term of the modified variance: the mean of the Allan terms at m starts in a row, all of which there must be.
-PresentTerms modified_terms(const PresentSums& sums, std::uint64_t m) {
-  const std::uint64_t samples = sums.present.size() - 1;
+PresentTerms modified_terms(const PresentSums& sums, std::size_t m) {
+  const std::size_t samples = sums.present.size() - 1;
   if (3 * m > samples + 1) return {};
   const auto factor = static_cast<double>(m);
   const double of_white = (factor * factor + 1) / (2 * factor * factor);
   // Running sums over the last m starts, from the first where all are there: u, and what it lacks.
   std::vector<double> d(samples - 2 * m + 1), less(d.size());
-  std::uint64_t in_a_row = 0;
+  std::size_t in_a_row = 0;
   long double sum = 0, lacks = 0, squares = 0, shortfall = 0;
   PresentTerms total;
-  for (std::uint64_t k = 0; k < d.size(); ++k) {
+  for (std::size_t k = 0; k < d.size(); ++k) {
     const Window a = window(sums, k, m), b = window(sums, k + m, m);
     if (!has_mean(a.present, factor) || !has_mean(b.present, factor)) {
       in_a_row = 0;
@@ -130,18 +131,18 @@ PresentTerms modified_terms(const PresentSums& sums, std::uint64_t m) {
   return total;
 }
 
-constexpr std::uint64_t kStarts =
+constexpr std::size_t kStarts =
     65536;  // a piece; pieces are added in order, whatever the number of threads
 constexpr double kWorthSaying = 0.01;
 
-PresentTerms all_terms(const PresentSums& sums, int order, std::uint64_t m, std::uint64_t stride) {
-  const std::uint64_t samples = sums.present.size() - 1,
-                      span = (static_cast<std::uint64_t>(order) + 1) * m;
+PresentTerms all_terms(const PresentSums& sums, int order, std::size_t m, std::size_t stride) {
+  const std::size_t samples = sums.present.size() - 1,
+                    span = (static_cast<std::size_t>(order) + 1) * m;
   if (span > samples) return {};
-  const std::uint64_t ends = samples - span + 1, piece = kStarts / stride * stride + stride;
+  const std::size_t ends = samples - span + 1, piece = kStarts / stride * stride + stride;
   std::vector<PresentTerms> parts((ends + piece - 1) / piece);
   parallel::for_each(0, parts.size(), [&](std::size_t k) {
-    const std::uint64_t first = k * piece;
+    const std::size_t first = k * piece;
     parts[k] = present_terms(sums, order, m, first, std::min(first + piece, ends), stride);
   });
   PresentTerms total;
@@ -161,7 +162,7 @@ double white_unit(const DeviationRow& row, std::uint64_t m) {
 
 MissingSamples octaves_below(const PresentSums& sums, std::uint64_t largest) {
   MissingSamples missing;
-  for (std::uint64_t m = 1; m < largest; m *= 2) {
+  for (std::size_t m = 1; m < largest; m *= 2) {
     const PresentTerms terms = all_terms(sums, 1, m, 1);
     const auto factor = static_cast<double>(m);
     const double dof = white_dof(DeviationType::oadev, m, terms.terms, 1);
@@ -185,8 +186,8 @@ std::vector<AllanPoint> points_of_present(std::span<const double> rate,
   const MissingSamples missing = octaves_below(sums, factors.empty() ? 0 : factors.back());
   std::vector<AllanPoint> points(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
-    const std::uint64_t m = factors[k];
-    const std::uint64_t stride = row.overlapping ? 1 : m;
+    const std::size_t m = detail::in_memory(factors[k]);
+    const std::size_t stride = row.overlapping ? 1 : m;
     const PresentTerms terms =
         row.of_sum ? modified_terms(sums, m) : all_terms(sums, row.order - 1, m, stride);
     if (terms.terms == 0) return;

@@ -26,7 +26,7 @@ struct EventShape {
 
 /// Where a series stands: n points of `per_point` samples.
 struct SeriesGrid {
-  std::uint64_t points = 0, per_point = 1;
+  std::size_t points = 0, per_point = 1;
 };
 
 /// Coefficients k = 1.. of the orthonormal DCT-II at [k-1], as many as `column` has room for.

@@ -81,7 +81,7 @@ std::size_t room_for(double tau, const SeriesGrid& grid) {
 }
 
 std::vector<double> warm_up_column(double tau, const SeriesGrid& grid) {
-  std::vector<double> column(std::min<std::size_t>(room_for(tau, grid), grid.points - 1));
+  std::vector<double> column(std::min(room_for(tau, grid), grid.points - 1));
   fill_column({EventKind::warm_up, 0, 0, tau}, grid, column);
   return column;
 }
@@ -232,7 +232,7 @@ using std::numbers::pi;
 constexpr double kPlaceDrop = 7.35;
 
 /// 1 / (2 sin(pi k / 2n)) for k = 1..n-1 at [k-1].
-std::vector<double> half_cosecants(std::uint64_t n) {
+std::vector<double> half_cosecants(std::size_t n) {
   std::vector<double> cosecant(n - 1);
   Turning half(pi / (2 * static_cast<double>(n)));
   for (double& value : cosecant) {
@@ -296,15 +296,15 @@ void subtract_shared(const Regression& beside,
 
 StepScan scan_steps(const Regression& beside,
                     std::span<const double> weight,
-                    std::uint64_t points,
-                    std::uint64_t margin) {
+                    std::size_t points,
+                    std::size_t margin) {
   const std::vector<double> cosecant = half_cosecants(points);
   SineSums sines(points);
   std::vector<double> information = step_information(weight, cosecant);
   double step = 0;
   for (const double w : weight) step += w / static_cast<double>(points);
   StepScan scan;
-  for (std::uint64_t t = margin; t + 1 + margin < points; t += StepScan::kEvery) {
+  for (std::size_t t = margin; t + 1 + margin < points; t += StepScan::kEvery) {
     const double both = std::sqrt(information[t] * information[t + 1]);
     const double shared = 0.5 * (information[t] + information[t + 1] - step);
     scan.distance.push_back(std::sqrt(std::max(0.0, 2 - 2 * shared / both)));
@@ -314,7 +314,7 @@ StepScan scan_steps(const Regression& beside,
     cross.push_back(products(sines, weight, cosecant, column));
   subtract_shared(beside, cross, information);
   scan.score = products(sines, weight, cosecant, beside.rest);
-  for (std::uint64_t t = 0; t < points; ++t) {
+  for (std::size_t t = 0; t < points; ++t) {
     const bool looked_at = t >= margin && t + margin < points && information[t] > 0;
     scan.score[t] = looked_at ? scan.score[t] / std::sqrt(information[t]) : 0;
     if (std::abs(scan.score[t]) > std::abs(scan.score[scan.best])) scan.best = t;
@@ -322,7 +322,7 @@ StepScan scan_steps(const Regression& beside,
   return scan;
 }
 
-Interval step_place(const StepScan& scan, double at, std::uint64_t margin) {
+Interval step_place(const StepScan& scan, double at, std::size_t margin) {
   const std::size_t last = scan.score.size() - 1;
   const auto middle = std::min(last, static_cast<std::size_t>(at));
   const std::size_t reach = std::max<std::size_t>(margin, 8);

@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::uint64_t kExact = 64;  ///< coefficients at which a function is called one by one
+constexpr std::size_t kExact = 64;  ///< coefficients at which a function is called one by one
 constexpr double kGrid = 1.0442737824274;  ///< sixteenth of an octave
 
 /// Flicker of means over flicker of samples at the means' rate.
@@ -47,25 +47,23 @@ std::array<double, kTerms> mean_unit_powers(double k,
 }
 
 std::vector<std::vector<double>> at_every_k(
-    std::uint64_t n,
-    std::size_t count,
-    const std::function<void(double, std::span<double>)>& power) {
+    std::size_t n, std::size_t count, const std::function<void(double, std::span<double>)>& power) {
   std::vector<std::vector<double>> all(count, std::vector<double>(n - 1));
-  const std::uint64_t exact = std::min<std::uint64_t>(kExact, n - 1);
+  const std::size_t exact = std::min(kExact, n - 1);
   std::vector<double> at_low(count), at_high(count);
-  for (std::uint64_t k = 1; k <= exact; ++k) {
+  for (std::size_t k = 1; k <= exact; ++k) {
     power(static_cast<double>(k), at_low);
     for (std::size_t i = 0; i < count; ++i) all[i][k - 1] = at_low[i];
   }
   double low = static_cast<double>(exact) + 0.5;
   power(low, at_low);
-  for (std::uint64_t k = exact + 1; k < n;) {
+  for (std::size_t k = exact + 1; k < n;) {
     const double high = low * kGrid;
     power(std::min(high, static_cast<double>(n)), at_high);
-    const std::uint64_t end = std::min(n, static_cast<std::uint64_t>(high) + 1);
+    const std::size_t end = std::min(n, static_cast<std::size_t>(high) + 1);
     for (std::size_t i = 0; i < count; ++i) {
       const double slope = (at_high[i] - at_low[i]) / (high - low);
-      for (std::uint64_t j = k; j < end; ++j)
+      for (std::size_t j = k; j < end; ++j)
         all[i][j - 1] = at_low[i] + slope * (static_cast<double>(j) - low);
     }
     k = std::max(k, end);

@@ -14,6 +14,7 @@
 #include <numbers>
 
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
@@ -99,10 +100,10 @@ constexpr std::uint64_t kExactUpTo = 4096;
 constexpr std::uint64_t kOneByOne = 6;
 
 /// E[c_k²] dt² at [k-1] of the series sqrt(m) times means of m samples.
-std::vector<double> exact_means(std::uint64_t n, std::uint64_t m) {
+std::vector<double> exact_means(std::size_t n, std::uint64_t m) {
   std::vector<double> covariance(n);
   const auto width = static_cast<double>(m);
-  for (std::uint64_t j = 0; j < n; ++j) {
+  for (std::size_t j = 0; j < n; ++j) {
     const auto lag = static_cast<double>(j);
     if (m == 1) {
       covariance[j] = -4 / pi / (4 * lag * lag - 1);
@@ -118,7 +119,7 @@ std::vector<double> exact_means(std::uint64_t n, std::uint64_t m) {
 
 double mean_of(const PowerBin& bin, const std::vector<double>& exact) {
   double sum = 0;
-  for (std::uint64_t k = bin.first; k < bin.end; ++k) sum += exact[k - 1];
+  for (std::uint64_t k = bin.first; k < bin.end; ++k) sum += exact[detail::in_memory(k) - 1];
   return sum / static_cast<double>(bin.end - bin.first);
 }
 
@@ -166,7 +167,7 @@ std::vector<double> flicker_phase_units(const std::vector<PowerBin>& bins, doubl
     if (bin.length != length || bin.spacing != spacing) {
       length = bin.length;
       spacing = bin.spacing;
-      exact = exact_means(length, spacing);
+      exact = exact_means(detail::in_memory(length), spacing);
     }
     out.push_back(mean_of(bin, exact) * rate_hz * rate_hz);
   }
@@ -213,8 +214,7 @@ double sine_integral_half_wave(std::uint64_t j) {
 
 std::array<double, kSiTable + 1> sine_integral_table() {
   std::array<double, kSiTable + 1> table{};
-  for (std::uint64_t j = 1; j <= kSiTable; ++j)
-    table[j] = table[j - 1] + sine_integral_half_wave(j);
+  for (std::size_t j = 1; j <= kSiTable; ++j) table[j] = table[j - 1] + sine_integral_half_wave(j);
   return table;
 }
 
@@ -272,7 +272,7 @@ double flicker_block_covariance(std::uint64_t j, std::uint64_t m) {
 
 double sine_integral_at_pi(std::uint64_t k) {
   static const std::array<double, kSiTable + 1> table = sine_integral_table();
-  if (k <= kSiTable) return table[k];
+  if (k <= kSiTable) return table[detail::in_memory(k)];
   // Si(x) = pi/2 - cos(x) f(x) - sin(x) g(x); at x = pi k only f remains, by its asymptotic series.
   const double x = pi * static_cast<double>(k), y = 1 / (x * x);
   const double f = (1 - 2 * y * (1 - 12 * y * (1 - 30 * y))) / x;
@@ -315,10 +315,11 @@ std::vector<double> dct_means_of_covariance(const std::vector<double>& g) {
 
 BlockMeanDct::BlockMeanDct(std::uint64_t n, std::uint64_t m, double dt_s)
     : n_(n), m_(m), dt_s_(dt_s) {
-  std::vector<double> covariance(n);
+  std::vector<double> covariance(detail::in_memory(n));
   const double origin = flicker_block_covariance(
       1, m);  // constants drop out of contrasts; small numbers keep the digits
-  for (std::uint64_t j = 0; j < n; ++j) covariance[j] = flicker_block_covariance(j, m) - origin;
+  for (std::size_t j = 0; j < covariance.size(); ++j)
+    covariance[j] = flicker_block_covariance(j, m) - origin;
   flicker_ = dct_means_of_covariance(covariance);
 }
 
@@ -326,7 +327,7 @@ std::array<double, kTerms> BlockMeanDct::mean(std::uint64_t k) const {
   const auto width = static_cast<double>(m_);
   std::array<double, kTerms> unit = dct_mean(static_cast<double>(k), n_, dt_s_ * width);
   unit[0] = 1 / dt_s_;
-  unit[1] = flicker_[k - 1];
+  unit[1] = flicker_[detail::in_memory(k) - 1];
   // Increments of averaged walk are MA(1): the point-sampled walk of step m dt, less a white part.
   unit[2] = width * (unit[2] - dt_s_ * width * (1 - 1 / (width * width)) / 6);
   unit[3] *= width;

@@ -101,13 +101,13 @@ double end_at(std::uint64_t k, std::uint64_t n) {
 /// `c`: coefficients 0..reach of a record of n samples.
 Ends ends_of(std::span<const double> c, std::uint64_t n, const EndNoise& noise) {
   Ends ends;
-  const std::uint64_t reach = c.size() - 1;
+  const std::size_t reach = c.size() - 1;
   ends.power = std::move(at_every_k(reach + 1, 1, [&](double k, std::span<double> out) {
     out[0] = power_at(noise, k, n, 1);
   })[0]);
   ends.share.resize(reach + 1);
   std::array<double, 2> product{}, square{};
-  for (std::uint64_t k = 1; k <= reach; ++k) {
+  for (std::size_t k = 1; k <= reach; ++k) {
     const double u = end_at(k, n), weight = u / ends.power[k - 1];
     ends.share[k] = u * weight;
     product[k % 2] += weight * c[k];
@@ -118,7 +118,7 @@ Ends ends_of(std::span<const double> c, std::uint64_t n, const EndNoise& noise) 
     ends.size[odd] = product[odd] / square[odd];
     ends.deviance += std::log(square[odd]) - product[odd] * ends.size[odd];
   }
-  for (std::uint64_t k = 1; k <= reach; ++k) ends.share[k] /= square[k % 2];
+  for (std::size_t k = 1; k <= reach; ++k) ends.share[k] /= square[k % 2];
   return ends;
 }
 
@@ -129,7 +129,7 @@ std::vector<PowerBin> expected_bins(std::span<const double> c,
                                     double dt_s) {
   PooledPower power{n, 1, 1, 1, {}};
   power.with_ends.assign(1, 0.0);
-  for (std::uint64_t k = 1; k < c.size(); ++k) {
+  for (std::size_t k = 1; k < c.size(); ++k) {
     const double left = c[k] - ends.size[k % 2] * end_at(k, n);
     power.mean.push_back(left * left + ends.share[k] * ends.power[k - 1]);
   }
@@ -159,7 +159,7 @@ Likeliest likeliest(
 EndNoise noise_with_ends(std::span<const double> coefficients, const EndNoise& start, bool clock) {
   constexpr double kJoins = 6;  ///< of 2 ln L
   constexpr std::size_t kHead = 1U << 14U;
-  const std::uint64_t n = coefficients.size();
+  const std::size_t n = coefficients.size();
   const std::span<const double> c = coefficients.first(std::min<std::size_t>(n, kHead));
   TermSet terms{};
   terms[kQuantization] = true;
@@ -193,9 +193,9 @@ EndNoise noise_with_ends(std::span<const double> coefficients, const EndNoise& s
 }
 
 std::vector<double> take_out_ends(std::span<double> coefficients, const EndNoise& noise) {
-  const std::uint64_t n = coefficients.size();
-  Ends ends = ends_of(coefficients.first(std::min<std::uint64_t>(n, kReachOfEnds + 1)), n, noise);
-  for (std::uint64_t k = 1; k < n; ++k) coefficients[k] -= ends.size[k % 2] * end_at(k, n);
+  const std::size_t n = coefficients.size();
+  Ends ends = ends_of(coefficients.first(std::min<std::size_t>(n, kReachOfEnds + 1)), n, noise);
+  for (std::size_t k = 1; k < n; ++k) coefficients[k] -= ends.size[k % 2] * end_at(k, n);
   return std::move(ends.share);
 }
 

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
+
 namespace libchar {
 
 std::vector<double> slow_means(std::span<const double> means) {
@@ -24,18 +26,18 @@ std::size_t MeanCutter::take_blocks(std::span<const double> means, MeanPowers& t
   for (; means.size() - taken >= kMeansBlock; taken += kMeansBlock) {
     if (!plan_) plan_.emplace(kMeansBlock);
     const std::span<const double> c = plan_->transform(means.subspan(taken, kMeansBlock));
-    add_squares(c.first(end_of_left(kMeansBlock, per_mean_, block_)), to.blocks);
+    add_squares(c.first(detail::in_memory(end_of_left(kMeansBlock, per_mean_, block_))), to.blocks);
   }
   return taken;
 }
 
 void MeanCutter::take_pieces(std::span<const double> rest, MeanPowers& to) const {
   for (std::size_t piece = 0; piece < to.pieces.size(); ++piece) {
-    const std::uint64_t length = MeanPowers::piece_length(piece);
+    const std::size_t length = detail::in_memory(MeanPowers::piece_length(piece));
     if (rest.size() < length) continue;
     Dct plan(length);
-    add_squares(plan.transform(rest.first(length)).first(end_of_left(length, per_mean_, block_)),
-                to.pieces[piece]);
+    const std::size_t end = detail::in_memory(end_of_left(length, per_mean_, block_));
+    add_squares(plan.transform(rest.first(length)).first(end), to.pieces[piece]);
     rest = rest.subspan(length);
   }
 }
@@ -44,7 +46,7 @@ void append_powers(const MeanPowers& powers,
                    std::uint64_t per_mean,
                    std::vector<PooledPower>& out) {
   for (std::size_t piece = 0; piece < powers.pieces.size(); ++piece) {
-    const std::uint64_t length = MeanPowers::piece_length(piece);
+    const std::size_t length = detail::in_memory(MeanPowers::piece_length(piece));
     append_pooled(powers.pieces[piece], length, per_mean, first_kept(length, kMeansBlock), out);
   }
   append_pooled(powers.blocks, kMeansBlock, per_mean, kLeftToMeans, out);

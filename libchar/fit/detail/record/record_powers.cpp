@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fit/detail/record/cycles.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/detail/record/ends.hpp"
@@ -75,7 +76,7 @@ Unit average_unit(std::uint64_t lo,
                   UnitAt&& unit_at) {
   Unit sum{};
   const auto is_clipped = [&](std::uint64_t k) {
-    return !clipped.empty() && clipped[k - first] != 0;
+    return !clipped.empty() && clipped[detail::in_memory(k - first)] != 0;
   };
   for (std::uint64_t from = lo, to = lo; from < hi; from = to + 1) {
     for (to = from; to < hi && !is_clipped(to);) ++to;
@@ -105,12 +106,13 @@ void append_bins_of(const PooledPower& power,
     if (end - hi < (hi - lo) / 4) hi = end;  // no sliver at the end
     double sum = 0, of_events = 0, with_ends = 0;
     std::uint64_t kept = 0;
-    for (std::uint64_t k = lo; k < hi; ++k) {
-      if (!clipped.empty() && clipped[k - power.first] != 0) continue;
+    for (std::size_t k = detail::in_memory(lo); k < hi; ++k) {
+      const std::size_t at = k - detail::in_memory(power.first);
+      if (!clipped.empty() && clipped[at] != 0) continue;
       const double gone = k < power.with_ends.size() ? power.with_ends[k] : 0;
       if (gone > kMostWithEnds) continue;
-      sum += power.mean[k - power.first] / (1 - gone);
-      if (!power.of_events.empty()) of_events += power.of_events[k - power.first];
+      sum += power.mean[at] / (1 - gone);
+      if (!power.of_events.empty()) of_events += power.of_events[at];
       with_ends += gone;
       ++kept;
     }
@@ -202,16 +204,17 @@ PooledPower record_power(std::span<const double> points,
     power.with_ends = detail::take_out_ends(without_ends, *ends);
     c = without_ends;
   }
-  power.mean.reserve(end > first ? end - first : 0);
-  for (std::uint64_t k = first; k < end; ++k) power.mean.push_back(c[k] * c[k]);
+  const std::size_t from = detail::in_memory(first), to = detail::in_memory(end);
+  power.mean.reserve(to > from ? to - from : 0);
+  for (std::size_t k = from; k < to; ++k) power.mean.push_back(c[k] * c[k]);
   if (first > 1 || power.mean.empty()) return power;
   const auto reach = static_cast<std::ptrdiff_t>(std::min(points.size(), detail::kCycleReach));
   std::vector<double> head(c.begin(), c.begin() + reach);
   power.cycles = detail::take_out_cycles(head, points.size());
   if (power.cycles.empty()) return power;
   power.without_cycles = power.mean;
-  for (std::size_t k = first; k < std::min<std::size_t>(end, head.size()); ++k)
-    power.without_cycles[k - first] = head[k] * head[k];
+  for (std::size_t k = from; k < std::min(to, head.size()); ++k)
+    power.without_cycles[k - from] = head[k] * head[k];
   return power;
 }
 
@@ -222,7 +225,7 @@ void append_pooled(const PooledSums& sums,
                    std::vector<PooledPower>& out) {
   if (sums.transforms == 0) return;
   PooledPower pooled{length, spacing, first, sums.transforms, {}};
-  for (std::uint64_t k = first; k < sums.power.size(); ++k)
+  for (std::size_t k = detail::in_memory(first); k < sums.power.size(); ++k)
     pooled.mean.push_back(sums.power[k] / static_cast<double>(sums.transforms));
   if (!pooled.mean.empty()) out.push_back(std::move(pooled));
 }

@@ -41,7 +41,8 @@ class HeldBack {
     truth_.conservativeResize(truth.rows(), kept + truth.cols());
     truth_.rightCols(truth.cols()) = truth;
     give(base_ + samples_.cols() - fusion::kAlignmentMargin);
-    const auto drop = std::max<Eigen::Index>(0, next_ - fusion::kAlignmentMargin - base_);
+    const auto drop = static_cast<Eigen::Index>(
+        std::max<std::int64_t>(0, next_ - fusion::kAlignmentMargin - base_));
     if (drop == 0) return;
     samples_ = samples_.rightCols(samples_.cols() - drop).eval();
     truth_ = truth_.rightCols(truth_.cols() - drop).eval();
@@ -52,7 +53,7 @@ class HeldBack {
  private:
   void give(std::int64_t until) {
     for (; next_ < std::min(until, to_); ++next_) {
-      const Eigen::Index at = next_ - base_;
+      const auto at = static_cast<Eigen::Index>(next_ - base_);
       aligner_.column(samples_, at, aligned_);
       // At the ends of the recording only sensors without a delay have samples: no array, no estimate.
       if (next_ < first_whole_ || next_ > last_whole_) aligned_.setConstant(kMissing);

@@ -97,16 +97,20 @@ class Gathered {
       const std::int64_t to = std::min<std::int64_t>(first + samples.cols(), start + each_);
       if (from >= to) continue;
       if (data.samples.size() == 0) {
-        data.samples.resize(samples.rows(), stretches_ * each_);
-        truths_.resize(truth.rows(), stretches_ * each_);
+        const auto all = static_cast<Eigen::Index>(stretches_ * each_);
+        data.samples.resize(samples.rows(), all);
+        truths_.resize(truth.rows(), all);
       }
-      const Eigen::Index at = s * each_ + from - start;
-      data.samples.middleCols(at, to - from) = samples.middleCols(from - first, to - from);
-      truths_.middleCols(at, to - from) = truth.middleCols(from - first, to - from);
+      const auto at = static_cast<Eigen::Index>(s * each_ + from - start);
+      const auto of = static_cast<Eigen::Index>(from - first),
+                 columns = static_cast<Eigen::Index>(to - from);
+      data.samples.middleCols(at, columns) = samples.middleCols(of, columns);
+      truths_.middleCols(at, columns) = truth.middleCols(of, columns);
     }
   }
   void finish(bool by_reference) {
-    for (std::int64_t s = 0; s < stretches_; ++s) data.starts.push_back(s * each_);
+    for (std::int64_t s = 0; s < stretches_; ++s)
+      data.starts.push_back(static_cast<Eigen::Index>(s * each_));
     if (by_reference) data.truth = truths_.row(0);
   }
   bool in_part() const { return stretches_ > 1; }

@@ -25,7 +25,8 @@ class Envelope {
   void push(std::int64_t first, Eigen::Index count, const Value& value) {
     for (Eigen::Index k = 0; k < count;) {
       const std::int64_t bin = (first + k) / size_;
-      const Eigen::Index stop = std::min<Eigen::Index>(count, (bin + 1) * size_ - first);
+      const auto stop =
+          static_cast<Eigen::Index>(std::min<std::int64_t>(count, (bin + 1) * size_ - first));
       double low = low_[static_cast<std::size_t>(bin)], high = high_[static_cast<std::size_t>(bin)];
       for (; k < stop; ++k) {
         const double v = value(k);

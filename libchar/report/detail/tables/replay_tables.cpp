@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/report/detail/replay_words.hpp"
 #include "libchar/report/detail/tables/scores.hpp"
@@ -296,7 +297,7 @@ Table detection_table(const ReplayView& view) {
   Table out("one false alarm in");
   if (!view.figures.detection) return out;
   for (const FaultAnswer& answer : r.detection[0].answers) {
-    const SensorFault& fault = r.faults[answer.fault];
+    const SensorFault& fault = r.faults[detail::in_memory(answer.fault)];
     out.columns.push_back({fmt::format("{} {} from {}: found after",
                                        r.sensors[fault.sensor].name,
                                        name_of(fault.kind),
