@@ -15,6 +15,7 @@
 #include "libchar/benchmark/bench_inputs.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
@@ -129,7 +130,7 @@ void bench_noise(Session& session,
                  const BenchInputs& inputs,
                  BenchReport& report) {
   CharacterizationBenchOptions options;
-  options.records = verb.records != 0 ? verb.records : verb.quick ? 12 : 60;
+  options.records = verb.records != 0 ? detail::in_memory(verb.records) : verb.quick ? 12 : 60;
   options.seed = verb.seed;
   options.methods = verb.methods;
   for (const BenchSignal& signal : inputs.signals)
@@ -139,7 +140,7 @@ void bench_noise(Session& session,
 
 FusionBench bench_scenes_of(Session& session, const BenchVerb& verb, const BenchInputs& inputs) {
   FusionBenchOptions options;
-  options.seeds = verb.runs != 0 ? verb.runs : verb.quick ? 3 : 12;
+  options.seeds = verb.runs != 0 ? detail::in_memory(verb.runs) : verb.quick ? 3 : 12;
   options.seed = verb.seed;
   options.algorithms = verb.algorithms;
   for (const std::string& text : verb.sweeps)
@@ -160,7 +161,7 @@ DesignBench bench_needs(Session& session, const BenchVerb& verb, const BenchInpu
   options.target = verb.target;
   options.tau_s = verb.tau_s.value_or(1);
   options.share = verb.share.value_or(10) / 100;
-  options.records = verb.records != 0 ? verb.records : verb.quick ? 12 : 40;
+  options.records = verb.records != 0 ? detail::in_memory(verb.records) : verb.quick ? 12 : 40;
   options.seed = verb.seed;
   if (verb.quick) options.most_samples = 4e5;
   return bench_design(inputs.signals, options, session.terminal);
