@@ -255,6 +255,13 @@ RecordedReport report_of_recording(Session& session,
   return {std::move(result.log), std::move(text)};
 }
 
+std::vector<std::string> recording_flags(std::vector<std::string> more) {
+  for (const char* flag :
+       {"--still", "--from", "--to", "--topic", "--time-source", "--time-column", "--time-unit"})
+    more.emplace_back(flag);
+  return more;
+}
+
 void add_recording_options(VerbOptions& verb,
                            Session& session,
                            AnalysisOptions& analysis,

@@ -56,6 +56,9 @@ RecordedReport report_of_recording(Session& session,
                                    const std::string& log,
                                    const libchar::CharacterizeOptions& options);
 
+/// Flags that have an effect on a recording only, and `more`.
+std::vector<std::string> recording_flags(std::vector<std::string> more);
+
 /// Options of verbs that take recordings next to reports: how they are read, --still, --temperature.
 /// `inputs`, which must live until the verb has run: they are refused where none of these is a recording.
 void add_recording_options(VerbOptions& verb,

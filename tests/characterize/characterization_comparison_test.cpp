@@ -276,6 +276,15 @@ TEST_CASE("compared sensors: what is not to be relied on is not the lowest, and 
   CHECK_FALSE(c.groups[0].candidates[0].takes_part);
   CHECK(c.groups[0].ranges[0].lowest == std::vector<std::size_t>{1});
   CHECK_THAT(c.verdict, Contains("moved is left out: motion throughout"));
+  // Each reason once, whoever has it.
+  std::vector<ReportedCharacterization> many = {measured("b", "x", "deg/s", 2, 1),
+                                                measured("c", "x", "deg/s", 3, 3)};
+  for (const char* name : {"d", "e", "f", "g", "h"}) {
+    many.push_back(moved);
+    many.back().name = name;
+  }
+  CHECK_THAT(compare_characterizations(many).verdict,
+             Contains("d, e, f and 2 more are left out: motion throughout."));
   moved.findings[0].severity = Severity::caution;
   const auto careful = compare_characterizations(
       {moved, measured("b", "x", "deg/s", 2, 1), measured("c", "x", "deg/s", 3, 3)});

@@ -177,23 +177,17 @@ void add_only(VerbOptions& options, const FitVerb& verb) {
   options.only("with --curve", [&verb] { return verb.curve != "none"; }, {"--quantity"});
   options.only("with --curve psd", [&verb] { return verb.curve == "psd"; }, {"--sides"});
   options.only("with --curve allan", [&verb] { return verb.curve == "allan"; }, {"--duration"});
-  options.only("with a recording, not with --curve",
-               [&verb] { return verb.curve == "none"; },
-               {"--still",
-                "--temperature",
-                "--data",
-                "--nominal-frequency",
-                "--unwrap",
-                "--frozen",
-                "--memory",
-                "--no-second-opinion",
-                "--no-remedies",
-                "--from",
-                "--to",
-                "--topic",
-                "--time-source",
-                "--time-column",
-                "--time-unit"});
+  options.only(
+      "with a recording, not with --curve",
+      [&verb] { return verb.curve == "none"; },
+      recording_flags({"--temperature",
+                       "--data",
+                       "--nominal-frequency",
+                       "--unwrap",
+                       "--frozen",
+                       "--memory",
+                       "--no-second-opinion",
+                       "--no-remedies"}));
 }
 
 std::function<void()> fit_options(VerbOptions& options, Session& session) {

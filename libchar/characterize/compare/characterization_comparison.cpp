@@ -219,12 +219,32 @@ std::string titles_of(const std::vector<Finding>& findings) {
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
+/// "a is left out: motion.", "a, b, c and 5 more are left out: motion.": once for each reason.
+std::string left_out_words(const ComparedGroup& group) {
+  constexpr std::size_t kMostNames = 3;
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const ComparedGroup::Candidate& one : group.candidates) {
+    if (one.takes_part) continue;
+    const std::string reason = titles_of(one.findings);
+    auto at = std::find_if(
+        reasons.begin(), reasons.end(), [&](const auto& known) { return known.first == reason; });
+    if (at == reasons.end()) at = reasons.insert(at, {reason, {}});
+    at->second.push_back(one.name);
+  }
+  std::string out;
+  for (const auto& [reason, names] : reasons) {
+    const std::size_t shown = std::min(names.size(), kMostNames);
+    std::string who = fmt::format(
+        "{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    if (shown < names.size()) who += fmt::format(" and {} more", names.size() - shown);
+    out += fmt::format(" {} {} left out: {}.", who, names.size() == 1 ? "is" : "are", reason);
+  }
+  return out;
+}
+
 /// What to know of those that lead, and who was left out.
 std::string warning_words(const ComparedGroup& group) {
-  std::string out;
-  for (const ComparedGroup::Candidate& one : group.candidates)
-    if (!one.takes_part)
-      out += fmt::format(" {} is left out: {}.", one.name, titles_of(one.findings));
+  std::string out = left_out_words(group);
   for (const std::size_t i : winners_of(group)) {
     const ComparedGroup::Candidate& one = group.candidates[i];
     if (!one.measured) out += fmt::format(" {} is stated without intervals.", one.name);

@@ -106,7 +106,7 @@ std::string lowest_words(const ComparedGroup& group) {
 std::string shorter_words(const ComparedGroup& group) {
   std::string out;
   for (const ComparedGroup::Candidate& one : group.candidates) {
-    if (one.curve.size() < 2) continue;
+    if (!one.takes_part || one.curve.size() < 2) continue;
     if (!reaches(one.curve, group.times.back().tau_s))
       out +=
           fmt::format(" The curve of {} ends at {}.", one.name, time_words(one.curve.back().tau_s));
