@@ -172,22 +172,24 @@ double apart(const std::vector<double>& a, const std::vector<double>& b, std::si
   return out;
 }
 
-/// What `fuse` adds while a sensor reads otherwise than it was learnt to is not in the C text: elsewhere,
-/// at most instants, the deviations are the same.
+/// What `fuse` adds while a sensor reads otherwise than it was learnt to is not in the C text. In the
+/// first 49 s none does; later the sensors walk away from what was learnt, and one fails. `from`:
+/// instant of the first value.
 void check_deviations(const std::vector<double>& fused,
                       const std::vector<double>& c,
-                      double tolerance) {
+                      double tolerance,
+                      std::size_t from = 0) {
+  constexpr std::size_t kAsLearnt = 4900;
   REQUIRE(fused.size() == c.size());
-  std::size_t same = 0, less = 0, both = 0;
+  std::size_t other = 0, less = 0;
   for (std::size_t k = 0; k < c.size(); ++k) {
     CHECK(std::isnan(fused[k]) == std::isnan(c[k]));
     if (std::isnan(c[k])) continue;
-    ++both;
-    same += std::abs(fused[k] - c[k]) <= tolerance ? 1 : 0;
+    other += from + k < kAsLearnt && !(std::abs(fused[k] - c[k]) <= tolerance) ? 1 : 0;
     less += fused[k] < c[k] - tolerance ? 1 : 0;
   }
+  CHECK(other == 0);
   CHECK(less == 0);
-  CHECK(10 * same >= 6 * both);
 }
 
 }  // namespace
@@ -231,7 +233,7 @@ TEST_CASE("model --to c: the virtual sensor in its steady state") {
   const auto part = [](const std::vector<double>& all) {
     return std::vector<double>(all.begin() + 3000, all.begin() + 5900);
   };
-  check_deviations(part(fused.sd), part(c.sd), 0.01 * sd);
+  check_deviations(part(fused.sd), part(c.sd), 0.01 * sd, 3000);
   const std::vector<double> a = part(fused.x), b = part(c.x);
   INFO(apart(a, b) / sd);
   CHECK(apart(a, b) < 0.05 * sd);
