@@ -115,6 +115,12 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
       "N",
       [&a](const std::string& text) { a.options.frozen = parse_count(text, 2); },
       "treat runs of N or more equal values as missing (default: they count)");
+  verb.add_parsed(
+      "--interpolated",
+      "N",
+      [&a](const std::string& text) { a.options.interpolated = parse_count(text, 4); },
+      "treat what lies on straight lines of N or more samples as missing, as gaps that were filled "
+      "(default: it counts)");
   verb.add_bytes(
       "--memory",
       a.options.memory_bytes,

@@ -60,7 +60,9 @@ struct CharacterizeOptions {
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
   double unwrap = 0;  ///< the values start again after this much, in their unit; 0: they do not
-  std::uint64_t frozen = 0;  ///< runs of so many equal values and longer are missing; 0: they count
+  /// Runs of so many equal values and longer are missing; so are the samples inside of straight lines of so many
+  /// samples and longer. 0: they count.
+  std::uint64_t frozen = 0, interpolated = 0;
   /// name of the channel that is the temperature: what it does to the others is taken out before
   /// their noise is fitted
   std::string temperature;

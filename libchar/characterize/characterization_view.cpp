@@ -113,6 +113,11 @@ std::vector<TraceMark> trace_marks(const ChannelResult& channel, const std::stri
                      change.at_s,
                      change.at_s,
                      fmt::format("noise × {}", number_text(change.factor, 3))});
+  for (const Finding& one : channel.quality.findings) {
+    const char* kind = one.code == "stuck" ? "frozen" : one.code == "interpolated" ? "filled" : "";
+    for (std::size_t i = 0; *kind != '\0' && i < one.where.time_s.size(); ++i)
+      out.push_back({kind, one.where.time_s[i].low, one.where.time_s[i].high, i == 0 ? kind : ""});
+  }
   if (!channel.fit) return out;
   if (const Stationarity& found = channel.fit->stationarity; !found.steady) {
     const auto add = [&](const char* kind, const Interval& at, double times) {

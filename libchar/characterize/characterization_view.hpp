@@ -32,7 +32,7 @@ struct OtherOpinion {
 
 /// Something found in the record, at its place in time.
 struct TraceMark {
-  std::string kind;             ///< "step", "warm-up", "ramp", "motion", "strength"
+  std::string kind;  ///< "step", "warm-up", "ramp", "motion", "strength", "frozen", "filled"
   double from_s = 0, to_s = 0;  ///< alike for an instant
   std::string label;            ///< "step 0.0031 deg/s"
 };

@@ -111,6 +111,8 @@ const Fields<CharacterizeOptions>& characterize_fields() {
         field<&Options::nominal_frequency>("nominal_frequency_hz", {.unit = "Hz"}),
         field<&Options::unwrap>("unwrap", {.meaning = "the values start again after this much"}),
         field<&Options::frozen>("frozen", {.meaning = "runs of so many equal values are missing"}),
+        field<&Options::interpolated>("interpolated",
+                                      {.meaning = "lines of so many samples are missing"}),
         field<&Options::memory_bytes>("memory_bytes", {.unit = "bytes"}),
         level<Options>("allan", always(allan_settings())),
         part<&Options::spectrum>("spectrum", always(spectrum_settings())),

@@ -31,7 +31,9 @@ class Meters final : public BlockSink {
       });
     });
   }
-  ChannelQuality quality(std::size_t channel) const { return meters_[channel].finish(); }
+  ChannelQuality quality(std::size_t channel, double rate_hz) const {
+    return meters_[channel].finish(rate_hz);
+  }
 
  private:
   int threads_;
@@ -44,7 +46,7 @@ Inspection inspect_rows(const std::string& path, const ReadOptions& options, Pro
   Inspection inspection;
   inspection.info = read_log(path, options, meters, progress);
   for (std::size_t c = 0; c < inspection.info.channels.size(); ++c)
-    inspection.quality.push_back(meters.quality(c));
+    inspection.quality.push_back(meters.quality(c, inspection.info.time.rate_hz));
   judge_gravity(inspection.info.channels,
                 [&](std::size_t c) -> ChannelQuality& { return inspection.quality[c]; });
   return inspection;

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/median.hpp"
@@ -19,6 +20,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/log/detail/line_watch.hpp"
 
 namespace libchar {
 namespace {
@@ -559,71 +561,35 @@ double tidy(double step) {
 struct Beginning {
   double value = 0;         ///< the first one that is there
   bool at_once = false;     ///< it is the very first
-  std::uint64_t run = 0;    ///< so many in a row have its value
-  std::uint64_t equal = 0;  ///< the same over missing ones
-  bool any = false, run_over = false, over = false;
+  std::uint64_t equal = 0;  ///< so many have its value, over missing ones
+  bool any = false, over = false;
 
   void push(std::span<const double> samples, bool from_first) {
     for (std::size_t i = 0; i < samples.size() && !over; ++i) {
-      if (!(std::fabs(samples[i]) <= kLargestSample)) {
-        run_over = run_over || any;
-        continue;
-      }
+      if (!(std::fabs(samples[i]) <= kLargestSample)) continue;
       if (!any) {
         value = samples[i];
         at_once = from_first && i == 0;
         any = true;
       }
       over = samples[i] != value;
-      if (over) continue;
-      ++equal;
-      run += run_over ? 0 : 1;
+      equal += over ? 0 : 1;
     }
   }
 };
+
+/// Values in a row: no noise of many levels repeats so often.
+constexpr std::uint64_t kFrozenRun = 8;
 
 struct OddValues {
   CounterWatch counter;
   WrapWatch wraps;
   RestingValue resting;
+  detail::FlagRuns same{kFrozenRun - 1};  // equal to the one before; the first sample has no flag
+  detail::LineWatch lines;
 };
 
 }  // namespace
-
-/// Values in a row: no noise of many levels repeats so often.
-constexpr std::uint64_t kFrozenRun = 8;
-
-/// Runs of one value.
-struct RunsOfOneValue {
-  std::uint64_t now = 0, longest = 0, repeated = 0;
-  std::uint64_t frozen_runs = 0,
-                frozen = 0;  // of kFrozenRun and more, and what only repeats in them
-
-  void push(bool repeats) {
-    repeated += repeats ? 1 : 0;
-    now = repeats ? now + 1 : 1;
-    longest = std::max(longest, now);
-    frozen_runs += now == kFrozenRun ? 1 : 0;
-    frozen += now == kFrozenRun ? kFrozenRun - 1 : now > kFrozenRun ? 1 : 0;
-  }
-  /// `goes_on`: so many values of the later part repeat the last one; `all`: it has no others.
-  void join(const RunsOfOneValue& later, std::uint64_t goes_on, bool all) {
-    const auto frozen_in = [](std::uint64_t run) { return run < kFrozenRun ? 0 : run - 1; };
-    const auto frozen_run = [](std::uint64_t run) {
-      return std::uint64_t{run < kFrozenRun ? 0U : 1U};
-    };
-    const std::uint64_t across = goes_on > 0 ? now + goes_on : 0;
-    repeated += later.repeated + (goes_on > 0 ? 1 : 0);
-    longest = std::max({longest, later.longest, across});
-    frozen += later.frozen;
-    frozen_runs += later.frozen_runs;
-    if (goes_on > 0) {
-      frozen += frozen_in(across) - frozen_in(now) - frozen_in(goes_on);
-      frozen_runs += frozen_run(across) - frozen_run(now) - frozen_run(goes_on);
-    }
-    now = goes_on > 0 && all ? across : later.now;
-  }
-};
 
 struct QualityMeter::State {
   MeanAndSpread values;
@@ -632,7 +598,7 @@ struct QualityMeter::State {
   DistinctValues distinct;
   Extreme top{1}, bottom{-1};
   std::uint64_t missing = 0, beyond = 0;
-  RunsOfOneValue same;
+  std::uint64_t held_at = 0;  // place in the record of the first sample on hold
   double previous = 0, minimum = __builtin_inf(), maximum = -__builtin_inf();
   bool joined = false;  // previous is the sample right before
   Beginning beginning;
@@ -655,7 +621,12 @@ struct QualityMeter::State {
                const BlockSums& sums,
                std::size_t n,
                std::size_t breaks);
-  void runs(const double* x, const double* before, std::size_t n, bool repeats);
+  void runs(const double* x,
+            const double* before,
+            std::size_t n,
+            bool repeats,
+            const unsigned char* begins,
+            std::uint64_t at);
   bool may_saturate(std::uint64_t levels) const;
   void join(const State& later);
   void join_runs(const State& later, bool direct);
@@ -675,13 +646,13 @@ void QualityMeter::State::layout(auto& at, auto& s) {
   CounterWatch::layout(at, s.odd.counter);
   Extreme::layout(at, s.top);
   Extreme::layout(at, s.bottom);
-  at.group(kWhat, s.missing, s.beyond, s.same.now, s.same.longest, s.same.repeated, s.pushed);
-  at.group(kWhat, s.same.frozen_runs, s.same.frozen);
+  at.group(kWhat, s.missing, s.beyond, s.pushed);
+  detail::FlagRuns::layout(at, s.odd.same);
+  detail::LineWatch::layout(at, s.odd.lines);
   at.group(kWhat, s.previous, s.minimum, s.maximum);
   at.group(kWhat, s.joined, s.float32);
   at(b.value);
-  at.group(kWhat, b.run, b.equal);
-  at.group(kWhat, b.at_once, b.any, b.run_over, b.over);
+  at.group(kWhat, b.equal, b.at_once, b.any, b.over);
 }
 
 void QualityMeter::State::push(std::span<const double> samples) {
@@ -689,6 +660,7 @@ void QualityMeter::State::push(std::span<const double> samples) {
   pushed += samples.size();
   const double* x = samples.data();
   const double* const end = x + samples.size();
+  const auto place = [&] { return pushed - static_cast<std::uint64_t>(end - x); };
   while (x != end) {
     const std::size_t n = std::min<std::size_t>(kBlock - used, static_cast<std::size_t>(end - x));
     // A whole block is looked at where it lies, but for its first sample, whose neighbour may be
@@ -696,7 +668,7 @@ void QualityMeter::State::push(std::span<const double> samples) {
     if (n == kBlock && joined && x != samples.data()) {
       const BlockSums sums = sums_of(x, x - 1, n, x[0]);
       if (!std::isnan(sums.sum) && sums.low >= -kLargestSample && sums.high <= kLargestSample) {
-        runs(x, x - 1, n, sums.repeats);
+        runs(x, x - 1, n, sums.repeats, nullptr, place());
         odd.counter.block(x, x - 1, nullptr, n);
         process(x, x - 1, sums, n, 0);
         x += n;
@@ -704,6 +676,7 @@ void QualityMeter::State::push(std::span<const double> samples) {
       }
     }
     make_room(n);
+    if (used == 0) held_at = place();
     if (!any_missing(x, n)) {
       std::memcpy(held.data() + 1 + used, x, n * sizeof(double));
       std::memset(starts.data() + used, 0, n);
@@ -759,7 +732,7 @@ void QualityMeter::State::process_held() {
     before = without_breaks;
   }
   const BlockSums sums = sums_of(x, before, n, x[0]);
-  runs(x, held.data(), n, sums.repeats);
+  runs(x, held.data(), n, sums.repeats, any_start ? starts.data() : nullptr, held_at);
   odd.counter.block(x, held.data(), starts.data(), n);
   process(x, before, sums, n, breaks);
   used = 0;
@@ -790,17 +763,52 @@ void QualityMeter::State::process(const double* x,
   previous = x[n - 1];
 }
 
-// Runs of one value: differences of exactly zero in a row, plus one; a missing sample ends a run.
-void QualityMeter::State::runs(const double* x, const double* before, std::size_t n, bool repeats) {
-  if (!repeats) {
-    same.push(false);
-    return;
+// Differences of exactly zero in a row; a missing sample ends a run.
+void QualityMeter::State::runs(const double* x,
+                               const double* before,
+                               std::size_t n,
+                               bool repeats,
+                               const unsigned char* begins,
+                               std::uint64_t at) {
+  odd.lines.block({x, n}, begins, at);
+  const std::size_t first = values.n == 0 ? 1 : 0;
+  if (!repeats) return odd.same.push_without(n - first);
+  if (first == 1) odd.resting.look(x[0], 1);
+  const auto equals = [&](std::size_t i) {
+    return x[i] - before[i] == 0 && (begins == nullptr || begins[i] == 0);
+  };
+  for (std::size_t i = first, from = first; i < n; from = i) {
+    for (; i < n && !equals(i); ++i) odd.resting.look(x[i], 1);
+    odd.same.push_without(i - from);
+    const std::uint64_t run = odd.same.now() + 2;
+    for (from = i; i < n && equals(i); ++i) odd.resting.look(x[i], run + (i - from));
+    odd.same.push_run(i - from, at + from);
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    const bool start = any_start && starts[i] != 0;
-    same.push(x[i] - before[i] == 0 && !start);
-    odd.resting.look(x[i], same.now);
+}
+
+/// How often each value is recorded, 1: once. Polled at r times the sensor's rate, runs are floor(r) or ceil(r) long;
+/// repeats of coarsely rounded noise come by chance, runs of one among them. Where r < 2, single values are there as
+/// well, and the repeats come evenly.
+static double held_times(const detail::FlagRuns& same) {
+  constexpr double kFewest = 64, kUneven = 0.35;
+  const double runs = static_cast<double>(same.pauses()) - 1;  // between pauses, with both ends
+  if (runs < kFewest || static_cast<double>(same.set()) < kFewest || same.closed().empty())
+    return 1;
+  double longer = 0, samples = runs;
+  for (std::size_t flags = 1; flags < same.closed().size(); ++flags) {
+    longer += same.closed()[flags];
+    samples += same.closed()[flags] * static_cast<double>(flags);
   }
+  const auto quantile = [&](double share) {
+    double sum = runs - longer;
+    std::size_t flags = 0;
+    while (sum < share * runs && flags + 1 < same.closed().size()) sum += same.closed()[++flags];
+    return flags + 1;
+  };
+  const std::size_t shortest = quantile(0.01), longest = quantile(0.99);
+  const bool every = shortest >= 2 && longest <= 2 * shortest + 1;
+  const bool some = shortest == 1 && longest <= 2 && same.unevenness() < kUneven;
+  return every || some ? samples / runs : 1;
 }
 
 QualityMeter::QualityMeter() : state_(detail::hidden<State>()) {}
@@ -856,16 +864,26 @@ constexpr double kMostSaturated = 0.01;
 /// Share of samples at one value inside the range that no rounding of a noise gives.
 constexpr double kDeadBand = 0.3;
 
+std::vector<Interval> times_of(const std::vector<ChannelQuality::Signs::Place>& places,
+                               double rate_hz) {
+  std::vector<Interval> out;
+  for (const auto& [from, to] : places)
+    if (rate_hz > 0)
+      out.push_back({static_cast<double>(from) / rate_hz, static_cast<double>(to) / rate_hz});
+  return out;
+}
+
 /// Runs of one value, where values do not repeat anyway, as they do between coarse steps. What repeats outside of them
 /// gives the chance of a run among these samples; a record that holds all of its values has a rhythm,
 /// and a quantity that changes little from sample to sample may rest.
-void judge_runs(const ChannelQuality& q, std::vector<Finding>& out) {
+void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
   constexpr double kMuch = 0.01, kChance = 1e-3, kHeld = 0.5, kRestless = 0.5;
   if (q.distinct_values <= 16) return;
   const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
   const double repeats =
       (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
-  const bool held = frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
+  const bool held =
+      q.signs.held_times > 1 || frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
   const bool noisy = q.difference_sd > kRestless * q.standard_deviation;
   const bool rare =
       q.saturated == 0 && !held && noisy && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
@@ -888,10 +906,45 @@ void judge_runs(const ChannelQuality& q, std::vector<Finding>& out) {
   if (!held && samples * std::pow(repeats, run - 1) < kChance)
     stuck.help.push_back(
         {"Take what stands still as missing.", {{"frozen", fmt::format("{}", run)}}});
+  stuck.where.time_s = times_of(q.signs.frozen_at, rate_hz);
   out.push_back(std::move(stuck));
 }
 
-void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
+void judge_held(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
+  if (!(q.signs.held_times > 1)) return;
+  const double times = q.signs.held_times;
+  out.push_back(finding("held_values",
+                        fmt::format("Each value is recorded {} times on average: the sensor {}.",
+                                    number_text(times, 3),
+                                    rate_hz > 0 ? fmt::format("gives {} Hz where the log has {} Hz",
+                                                              number_text(rate_hz / times, 4),
+                                                              number_text(rate_hz, 4))
+                                                : "is slower than the log")));
+}
+
+/// Gaps that were filled. A signal without noise is full of lines.
+void judge_lines(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
+  constexpr double kRestless = 0.5, kMuch = 0.01, kAll = 0.5;
+  constexpr std::uint64_t kFewestSamples = 1000;
+  if (q.signs.lines == 0 || q.samples < kFewestSamples || q.distinct_values <= 16) return;
+  if (!q.signs.counter.empty() || !(q.difference_sd > kRestless * q.standard_deviation)) return;
+  const double share = static_cast<double>(q.signs.on_lines) / static_cast<double>(q.samples);
+  Finding lines = finding(
+      "interpolated",
+      fmt::format("{} lie on straight lines between two others, in {}: filled or interpolated",
+                  share < kMuch ? plural(q.signs.on_lines, "sample")
+                                : percent_text(share) + " of the samples",
+                  plural(q.signs.lines, "place")));
+  lines.count = q.signs.lines;
+  lines.where.time_s = times_of(q.signs.lines_at, rate_hz);
+  if (share > kMuch) lines.severity = Severity::bad;
+  if (share < kAll)
+    lines.help.push_back({"Take what lies on lines as missing.",
+                          {{"interpolated", fmt::format("{}", q.signs.line_run + 2)}}});
+  out.push_back(std::move(lines));
+}
+
+void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
   if (!q.signs.marks.empty()) {  // what else is odd about the ends is these
     std::vector<std::string> texts;
     for (const double mark : q.signs.marks) texts.push_back(shortest(mark));
@@ -935,10 +988,12 @@ void judge_ends(const ChannelQuality& q, std::vector<Finding>& out) {
     out.push_back(std::move(dead));
     return;
   }
-  judge_runs(q, out);
+  judge_held(q, rate_hz, out);
+  judge_runs(q, rate_hz, out);
+  judge_lines(q, rate_hz, out);
 }
 
-std::vector<Finding> findings_of(const ChannelQuality& q) {
+std::vector<Finding> findings_of(const ChannelQuality& q, double rate_hz) {
   std::vector<Finding> out;
   if (q.beyond > 0) {
     out.push_back(finding("beyond_range",
@@ -953,8 +1008,8 @@ std::vector<Finding> findings_of(const ChannelQuality& q) {
     return out;
   }
   judge_values(q, out);
-  judge_ends(q, out);
-  if (q.samples >= 1000 && q.difference_kurtosis > 10)
+  judge_ends(q, rate_hz, out);
+  if (q.samples >= 1000 && q.difference_kurtosis > 10 && !(q.signs.held_times > 1))
     out.push_back(finding(
         "spiky",
         fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, "
@@ -972,7 +1027,7 @@ bool QualityMeter::State::may_saturate(std::uint64_t levels) const {
   if (levels <= kFewLevels || !odd.counter.sentence().empty()) return false;
   const double ends = static_cast<double>(top.count + bottom.count);
   const double others = values.n - ends;
-  const double repeats = static_cast<double>(same.repeated) - ends;
+  const double repeats = static_cast<double>(odd.same.set()) - ends;
   return repeats < 0.5 * others;
 }
 
@@ -1011,8 +1066,9 @@ void QualityMeter::State::join_runs(const State& later, bool direct) {
   const bool all = is(later.values.n, other.equal);
   top.join(later.top, later.top.value == other.value ? other.equal : 0, all);
   bottom.join(later.bottom, -later.bottom.value == other.value ? other.equal : 0, all);
-  const bool goes_on = direct && other.value == previous;
-  same.join(later.same, goes_on ? other.run : 0, other.run == later.pushed);
+  if (values.n > 0) odd.same.push(direct && other.value == previous, pushed);
+  odd.same.join(later.odd.same, pushed, 1);
+  odd.lines.join(later.odd.lines, direct, pushed);
   if (values.n == 0) {
     beginning = other;
     beginning.at_once = other.at_once && pushed == 0;
@@ -1022,8 +1078,6 @@ void QualityMeter::State::join_runs(const State& later, bool direct) {
     beginning.over = true;
     return;
   }
-  if (goes_on && beginning.run == pushed) beginning.run += other.run;
-  beginning.run_over = beginning.run_over || other.run_over || !direct;
   beginning.equal += other.equal;
   beginning.over = other.over;
 }
@@ -1038,7 +1092,6 @@ void QualityMeter::join(const QualityMeter& later) {
     state_->beyond += other.beyond;
     state_->pushed += other.pushed;
     state_->joined = false;
-    state_->beginning.run_over = state_->beginning.run_over || state_->beginning.any;
     return;
   }
   state_->join(other);
@@ -1053,12 +1106,14 @@ void QualityMeter::write_state(StateWriter& to) const {
 void QualityMeter::read_state(StateReader& from) {
   State s;
   State::layout(from, s);
+  s.odd.same.check(from);
+  s.odd.lines.check(from);
   constexpr double kExact = 0x1p53;  // a count is whole up to here
   if (!(s.values.n >= 0 && s.values.n <= kExact)) from.refuse("the number of its samples");
   *state_ = std::move(s);
 }
 
-ChannelQuality QualityMeter::finish() const {
+ChannelQuality QualityMeter::finish(double rate_hz) const {
   State state = *state_;
   state.process_held();
   ChannelQuality q;
@@ -1075,7 +1130,7 @@ ChannelQuality QualityMeter::finish() const {
       q.standard_deviation = std::numeric_limits<double>::quiet_NaN();
   }
   q.distinct_values = state.distinct.values().size();
-  q.longest_stuck = state.same.longest;
+  q.longest_stuck = q.samples > 0 ? state.odd.same.longest() + 1 : 0;
   const double others = state.top.next + state.bottom.next;
   if (q.distinct_values > 3) {
     if (state.bottom.is_mark(state.top.value + state.bottom.next) || state.bottom.is_mark(others))
@@ -1093,13 +1148,22 @@ ChannelQuality QualityMeter::finish() const {
                       : mark == -state.bottom.next ? state.bottom.at_next
                       : mark == q.maximum          ? state.top.count
                                                    : state.top.at_next;
-  q.signs.frozen = state.same.frozen;
-  q.signs.frozen_runs = state.same.frozen_runs;
+  std::tie(q.signs.frozen_runs, q.signs.frozen) = state.odd.same.from_length(kFrozenRun - 1);
+  for (const auto& [from, to] : state.odd.same.places())
+    q.signs.frozen_at.push_back({from - 1, to});
+  q.signs.held_times = held_times(state.odd.same);
+  q.signs.line_run = state.odd.lines.least_run();
+  if (q.signs.line_run > 0) {
+    std::tie(q.signs.lines, q.signs.on_lines) =
+        state.odd.lines.runs().from_length(q.signs.line_run);
+    for (const auto& [from, to] : state.odd.lines.runs().places())
+      if (to - from >= q.signs.line_run) q.signs.lines_at.push_back({from - 2, to});
+  }
   q.signs.resting_value = state.odd.resting.value;
   q.signs.at_rest = state.odd.resting.count;
   q.at_minimum = state.bottom.count;
   q.at_maximum = state.top.count;
-  q.repeats = state.same.repeated;
+  q.repeats = state.odd.same.set();
   if (state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values))
     q.saturated = state.top.saturated() + state.bottom.saturated();
   q.difference_kurtosis = state.differences.kurtosis();
@@ -1116,7 +1180,7 @@ ChannelQuality QualityMeter::finish() const {
   }
   if (!state.odd.counter.is_even() && q.signs.marks.empty())
     state.odd.wraps.read(state.differences, q.maximum - q.minimum, q.signs);
-  q.findings = findings_of(q);
+  q.findings = findings_of(q, rate_hz);
   return q;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libchar/core/hidden.hpp"
@@ -26,6 +27,13 @@ struct ChannelQuality {
     std::uint64_t at_rest = 0;  ///< samples at it from there on; 0: no value did
     /// runs of one value of eight and more, and the samples in them that only repeat
     std::uint64_t frozen_runs = 0, frozen = 0;
+    using Place = std::pair<std::uint64_t, std::uint64_t>;  ///< from, to: samples of the record
+    std::vector<Place> frozen_at;                           ///< the first ones
+    /// runs on straight lines of `line_run` steps and more, as chance does not give them, and the samples inside
+    std::uint64_t lines = 0, on_lines = 0, line_run = 0;
+    std::vector<Place> lines_at;
+    double held_times =
+        1;  ///< each value is recorded, on average, where a slower sensor was polled
     std::uint64_t marked = 0;  ///< samples at `marks`
   };
   std::uint64_t samples = 0;  ///< not missing
@@ -55,7 +63,8 @@ class QualityMeter {
  public:
   QualityMeter();
   void push(std::span<const double> samples);
-  ChannelQuality finish() const;
+  /// `rate_hz`: for the times in findings; 0: without them.
+  ChannelQuality finish(double rate_hz = 0) const;
 
   /// The samples that `later` has seen follow directly: as if they had been pushed here, but for
   /// rounding, and for a counter, which both parts must show.
@@ -67,6 +76,13 @@ class QualityMeter {
   struct State;
   detail::Hidden<State> state_;
 };
+
+namespace detail {
+/// `fewest` and more equal samples in a row are missing.
+void forget_frozen(std::span<double> samples, std::uint64_t fewest);
+/// So are those inside of straight lines of `fewest` samples and more; the ends of a line are samples.
+void forget_lines(std::span<double> samples, std::uint64_t fewest);
+}  // namespace detail
 
 /// The sampling rate. Throws Error(numeric) where it is not known.
 double known_rate_hz(const LogInfo& info);

@@ -17,6 +17,7 @@
 #include "libchar/fit/signs/digital.hpp"
 #include "libchar/fit/signs/events.hpp"
 #include "libchar/fit/signs/motion.hpp"
+#include "tests/support/digital.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"
 
@@ -167,7 +168,7 @@ void print_recording(const std::string& path, double rate_hz) {
     const Motion motion = find_motion(series);
     fmt::print("column {}:\n", c);
     for (const Finding& one : motion.findings) fmt::print("   {}\n", one.sentence);
-    for (const Finding& one : find_digital_faults(record, rate_hz).findings)
+    for (const Finding& one : test::digital_faults(record, rate_hz).findings)
       fmt::print("   {}\n", one.sentence);
     if (motion.whole) continue;
     for (const Finding& one : find_events(series, fitted_powers()).findings)

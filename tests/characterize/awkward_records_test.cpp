@@ -77,13 +77,18 @@ TEST_CASE("a frequency far from nominal, or with none, is doubted in a sentence"
   Recording recording;
   recording.info.channels.resize(1);
   recording.info.time.rate_hz = 1;
-  recording.samples = {white(2000, 7)};
-  for (double& v : recording.samples[0]) v += 1e7;
+  const std::vector<double> noise = white(2000, 7);
+  recording.samples = {noise};
   CharacterizeOptions options;
   options.data = SampleKind::frequency;
-  for (const auto& [nominal, sentence] :
-       {std::pair{0.0, "without `nominal_frequency`"}, {5e6, "far from the nominal"}, {1e7, ""}}) {
+  for (const auto& [nominal, scatter, sentence] :
+       {std::tuple{0.0, 1e3, "without `nominal_frequency`"},
+        {0.0, 1e-3, "like frequencies or periods themselves, not like fractions"},
+        {5e6, 1.0, "far from the nominal"},
+        {1e7, 1.0, ""}}) {
     options.nominal_frequency = nominal;
+    for (std::size_t t = 0; t < noise.size(); ++t)
+      recording.samples[0][t] = 1e7 + scatter * noise[t];
     const auto problems = characterize(recording, options).channels[0].findings;
     CAPTURE(nominal);
     REQUIRE(problems.empty() == (nominal == 1e7));
@@ -189,4 +194,33 @@ TEST_CASE("the interval of a correlation time holds the time, where other terms 
     }
   }
   CHECK(processes > 0);
+}
+
+TEST_CASE(
+    "what is no phase, no fraction of a frequency and no rate is doubted, with the option that "
+    "fits") {
+  Recording recording;
+  recording.info.channels.resize(1);
+  recording.info.time.rate_hz = 1;
+  const std::vector<double> noise = white(4000, 8);
+  CharacterizeOptions options;
+  const auto found = [&](SampleKind data, std::string_view code) {
+    options.data = data;
+    const Characterization result = characterize(recording, options);
+    for (const Finding& one : result.channels[0].findings)
+      if (one.code == code) return one.help.at(0).options.at(0).option;
+    return std::string();
+  };
+  recording.samples = {noise};
+  for (double& v : recording.samples[0]) v = 1e-7 * (1 + 1e-11 * v);
+  CHECK(found(SampleKind::phase, "frequency_mean") == "data");
+  CHECK(found(SampleKind::frequency, "frequency_mean") == "nominal_frequency");
+  CHECK(found(SampleKind::rate, "frequency_mean").empty());
+  recording.samples = {noise};
+  CHECK(found(SampleKind::rate, "looks_integrated").empty());
+  double sum = 0;
+  for (double& v : recording.samples[0]) v = sum += v;
+  CHECK(found(SampleKind::rate, "looks_integrated") == "data");
+  CHECK(found(SampleKind::frequency, "looks_integrated") == "data");
+  CHECK(found(SampleKind::phase, "looks_integrated").empty());
 }

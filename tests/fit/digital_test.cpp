@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/digital.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"
 #include "tests/support/shared.hpp"
@@ -32,10 +33,10 @@ TEST_CASE("digital: noise has no rails, no held values and no staircase, also wh
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     std::vector<double> y = noise(seed);
     y[77] = std::numeric_limits<double>::quiet_NaN();
-    CHECK(find_digital_faults(y, kDigitalRate).findings.empty());
+    CHECK(test::digital_faults(y, kDigitalRate).findings.empty());
     for (const double step : {0.01, 0.1, 0.3, 0.7}) {
       INFO("seed " << seed << ", step " << step);
-      CHECK(find_digital_faults(rounded(y, step * kSigma), kDigitalRate, step * kSigma)
+      CHECK(test::digital_faults(rounded(y, step * kSigma), kDigitalRate, step * kSigma)
                 .findings.empty());
     }
   }
@@ -49,16 +50,16 @@ TEST_CASE("digital: two levels, a counter and a lone spike have no rails") {
     counter[t] = static_cast<double>(t % 256);
   }
   spike[777] = 5;
-  CHECK(find_digital_faults(square, kDigitalRate).rails.empty());
-  CHECK(find_digital_faults(counter, kDigitalRate).rails.empty());
-  CHECK(find_digital_faults(spike, kDigitalRate).rails.empty());
+  CHECK(test::digital_faults(square, kDigitalRate).rails.empty());
+  CHECK(test::digital_faults(counter, kDigitalRate).rails.empty());
+  CHECK(test::digital_faults(spike, kDigitalRate).rails.empty());
 }
 
 TEST_CASE("digital: samples at a rail are counted, on a grid and off it") {
   std::vector<double> y = noise(40);
   for (double& value : y) value = std::clamp(value, -1.9 * kSigma, 2.2 * kSigma);
   const auto clipped = static_cast<double>(std::count(y.begin(), y.end(), 2.2 * kSigma));
-  const DigitalFaults faults = find_digital_faults(y, kDigitalRate, {}, "deg/s");
+  const DigitalFaults faults = test::digital_faults(y, kDigitalRate, {}, "deg/s");
   REQUIRE(faults.rails.size() == 2);
   CHECK_FALSE(faults.rails[0].high);
   CHECK(faults.rails[1].value == 2.2 * kSigma);
@@ -69,7 +70,7 @@ TEST_CASE("digital: samples at a rail are counted, on a grid and off it") {
   std::vector<double> one = noise(41);
   for (double& value : one) value = std::min(value, 2 * kSigma);
   const DigitalFaults coarse =
-      find_digital_faults(rounded(one, 0.1 * kSigma), kDigitalRate, 0.1 * kSigma);
+      test::digital_faults(rounded(one, 0.1 * kSigma), kDigitalRate, 0.1 * kSigma);
   REQUIRE(coarse.rails.size() == 1);
   CHECK(coarse.rails[0].high);
 }
@@ -83,7 +84,7 @@ TEST_CASE("digital: values that are recorded several times") {
         y[t] = sensor[static_cast<std::size_t>(static_cast<double>(t) / times)];
       if (step > 0) y = rounded(y, step * kSigma);
       INFO("times " << times << ", step " << step);
-      const DigitalFaults faults = find_digital_faults(y, kDigitalRate);
+      const DigitalFaults faults = test::digital_faults(y, kDigitalRate);
       // Rounding makes neighbours equal by chance: what is held less than twice is then not told from it.
       if (step > 0 && times < 2) continue;
       REQUIRE(faults.held.has_value());
@@ -98,7 +99,7 @@ TEST_CASE("digital: a converter's step above the noise") {
       test::NoiseSource(kDigitalSamples, kDigitalRate, 43).record(5e-3, 0, 1e-2);
   for (const double ratio : {1.5, 2.5}) {
     const double step = ratio * kSigma;
-    const DigitalFaults faults = find_digital_faults(rounded(y, step), kDigitalRate, step);
+    const DigitalFaults faults = test::digital_faults(rounded(y, step), kDigitalRate, step);
     INFO("step " << ratio << " sigma");
     REQUIRE(faults.staircase.has_value());
     CHECK_FALSE(faults.staircase->bounded);
@@ -106,7 +107,7 @@ TEST_CASE("digital: a converter's step above the noise") {
     CHECK(faults.rails.empty());
   }
   const DigitalFaults coarse =
-      find_digital_faults(rounded(y, 10 * kSigma), kDigitalRate, 10 * kSigma);
+      test::digital_faults(rounded(y, 10 * kSigma), kDigitalRate, 10 * kSigma);
   REQUIRE(coarse.staircase.has_value());
   CHECK(coarse.staircase->bounded);
 }
@@ -117,7 +118,7 @@ TEST_CASE("digital: a clean recording of a real sensor") {
   for (std::size_t axis = 0; axis < 6; ++axis) {
     INFO("axis " << axis);
     const DigitalFaults faults =
-        find_digital_faults(array.column(axis), 100, axis < 3 ? 0.05 : 1.0 / 300);
+        test::digital_faults(array.column(axis), 100, axis < 3 ? 0.05 : 1.0 / 300);
     CHECK(faults.rails.empty());
     CHECK_FALSE(faults.held.has_value());
   }

@@ -18,11 +18,12 @@ using test::read_text;
 
 namespace {
 
-struct Clock {
+struct StatedClock {
   std::string name;
   double unit_ns;
 };
-const std::vector<Clock> kClocks = {{"t[s]", 1e9}, {"t[ms]", 1e6}, {"t[us]", 1e3}, {"t[ns]", 1}};
+const std::vector<StatedClock> kClocks = {
+    {"t[s]", 1e9}, {"t[ms]", 1e6}, {"t[us]", 1e3}, {"t[ns]", 1}};
 
 /// What a log says of its time, and what is true of it.
 struct TimedRows {
@@ -38,7 +39,7 @@ struct Rules {
   std::size_t rows = 4000;
 };
 
-std::string text_of(const TimedRows& rows, const Clock& clock) {
+std::string text_of(const TimedRows& rows, const StatedClock& clock) {
   std::string text = clock.name + ",x\n";
   for (std::size_t i = 0; i < rows.instants.size(); ++i) {
     const double value = rows.instants[i] * 1e9 / clock.unit_ns;
@@ -201,7 +202,7 @@ const std::vector<Cause> kCauses = {
 TEST_CASE("stamps of every cause, unit, jitter and gap: the right rate and no gap that is none") {
   std::size_t inputs = 0;
   for (const Cause& cause : kCauses)
-    for (const Clock& clock : kClocks)
+    for (const StatedClock& clock : kClocks)
       for (const double jitter : {0.0, 0.02, 0.1})
         for (const int gap : {0, 7, 5000}) {
           Rules rules;

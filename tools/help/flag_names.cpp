@@ -57,6 +57,7 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"high_pass_hz", "--high-pass"},
                                {"inflate", "--inflate"},
                                {"input", "--input"},
+                               {"interpolated", "--interpolated"},
                                {"kind", "--kind"},
                                {"labels", "--label"},
                                {"learning", "--learning"},
@@ -102,7 +103,7 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
 
 /// What mends a record before its noise is fitted: other verbs name the one that does it.
 constexpr std::string_view kOfAnalysis[] = {
-    "--data", "--frozen", "--still", "--temperature", "--unwrap"};
+    "--data", "--frozen", "--interpolated", "--still", "--temperature", "--unwrap"};
 
 const std::set<std::string>* g_of_verb = nullptr;  // of the verb that runs
 

@@ -185,6 +185,7 @@ void add_only(VerbOptions& options, const FitVerb& verb) {
                        "--nominal-frequency",
                        "--unwrap",
                        "--frozen",
+                       "--interpolated",
                        "--memory",
                        "--no-second-opinion",
                        "--no-remedies"}));

@@ -8,6 +8,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/allan/confidence.hpp"
@@ -15,6 +16,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/parallel/parallel.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
@@ -96,6 +98,7 @@ class Finish {
   void add_spectrum(ChannelResult& result, double rate_hz);
   bool is_noise(ChannelResult& result) const;
   void doubt_frequency(ChannelResult& result) const;
+  void doubt_rate(ChannelResult& result, double rate_hz) const;
   std::optional<EventSeries> series(double rate_hz) const;
   bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s);
   void find_digital(ChannelResult& result, double rate_hz) const;
@@ -119,7 +122,8 @@ class Finish {
 bool Finish::is_answered(const Finding& one) const {
   if (one.code == "spiky") return options_.unwrap > 0 || options_.frozen > 1;
   return (options_.unwrap > 0 && one.code == "phase_wraps") ||
-         (options_.frozen > 1 && one.code == "stuck");
+         (options_.frozen > 1 && one.code == "stuck") ||
+         (options_.interpolated > 0 && one.code == "interpolated");
 }
 
 // Phase becomes rate. One wild reading would be two wild rates that sum to zero: the phase is
@@ -270,17 +274,16 @@ std::optional<EventSeries> Finish::series(double rate_hz) const {
 // A sensor that moves shows its motion and not its noise: no coefficients of a recording that moves
 // throughout, and a sentence where a stretch of it does.
 bool Finish::is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s) {
-  if (options_.data != SampleKind::rate || !options_.wanted.fit || !options_.fit.remedies)
-    return true;
+  if (options_.data != SampleKind::rate || !options_.fit.remedies) return true;
   series_ = series(rate_hz);
   if (!series_) return true;
   result.motion = find_motion(*series_);
   add_findings(result.motion.findings, result);
   moving_s = result.motion.moving_s;
-  if (result.motion.whole)
-    result.findings.push_back(
-        finding("no_fit", "no noise fit: the recording holds a signal throughout"));
-  return !result.motion.whole;
+  if (!result.motion.whole || !options_.wanted.fit) return true;
+  result.findings.push_back(
+      finding("no_fit", "no noise fit: the recording holds a signal throughout"));
+  return false;
 }
 
 // Of samples as the log has them: those of other kinds are differences or ratios.
@@ -312,7 +315,9 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
         const std::string& unit = result.channel.unit;
         if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
         options.clock = options_.data != SampleKind::rate;
-        if (options_.unwrap == 0 && options_.frozen <= 1)  // else of what is left
+        // Else of what is left; what is held repeats, and jumps.
+        if (options_.unwrap == 0 && options_.frozen <= 1 && options_.interpolated == 0 &&
+            !(found_.signs.held_times > 1))
           options.difference_kurtosis = found_.difference_kurtosis;
         const bool of_kept = is_whole() || read_.temperature;
         result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options)
@@ -385,9 +390,25 @@ void Finish::finish(ChannelResult& result, double rate_hz) {
 // A clock is a few parts in a million off, not a hundredth: else somebody has named the wrong kind
 // of data, or no nominal frequency.
 void Finish::doubt_frequency(ChannelResult& result) const {
-  constexpr double kMostOff = 0.01;
-  if (options_.data != SampleKind::frequency || found_.samples == 0) return;
+  constexpr double kMostOff = 0.01, kLeastScatter = 1e-8;
+  if (options_.data == SampleKind::rate || found_.samples == 0) return;
   const double nominal = options_.nominal_frequency;
+  if (nominal == 0 && found_.standard_deviation < kLeastScatter * std::abs(found_.mean)) {
+    Finding whole = finding(
+        "frequency_mean",
+        fmt::format("The values scatter by {} of their mean, {}: they look like frequencies or "
+                    "periods themselves, not like {}.",
+                    number_text(found_.standard_deviation / std::abs(found_.mean), 2),
+                    number_text(found_.mean, 6),
+                    options_.data == SampleKind::phase ? "a phase" : "fractions of them"));
+    Finding::Help& help =
+        whole.help.emplace_back(Finding::Help{"Take them as fractions of their mean."});
+    if (options_.data == SampleKind::phase) help.options.push_back({"data", "frequency"});
+    help.options.push_back({"nominal_frequency", shortest(rounded(found_.mean, 9))});
+    result.findings.push_back(std::move(whole));
+    return;
+  }
+  if (options_.data != SampleKind::frequency) return;
   const double off = nominal == 0 ? found_.mean : found_.mean / nominal - 1;
   if (std::abs(off) <= kMostOff) return;
   result.findings.push_back(finding(
@@ -398,6 +419,23 @@ void Finish::doubt_frequency(ChannelResult& result) const {
                    : fmt::format("The mean, {}, is far from the nominal frequency of {}.",
                                  number_text(found_.mean, 6),
                                  number_text(nominal, 6))));
+}
+
+// The integral of a rate's white noise is a random walk; the rate of a sensor has white noise on top, at the latest
+// between the fastest samples.
+void Finish::doubt_rate(ChannelResult& result, double rate_hz) const {
+  constexpr double kShare = 1;  // of the walk's own root density there
+  if (options_.data == SampleKind::phase || !result.fit) return;
+  const Coefficient& walk = (*result.fit)[Term::walk];
+  const Coefficient& white = (*result.fit)[Term::white];
+  if (walk.status != Status::detected || !walk.value || !white.upper95) return;
+  if (*white.upper95 > kShare * *walk.value / (std::numbers::pi * rate_hz)) return;
+  Finding integral = finding(
+      "looks_integrated",
+      "The record is a random walk up to its fastest samples, without white noise: so is an "
+      "angle, a velocity or a phase, and no rate.");
+  integral.help.push_back({"Where it is one, say so.", {{"data", "phase"}}});
+  result.findings.push_back(std::move(integral));
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
@@ -429,7 +467,7 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
   ChannelResult result;
   result.channel = channel;
   result.channel.unit = unit_of_rate(channel.unit);
-  found_ = read_.sums.meters.quality.finish();
+  found_ = read_.sums.meters.quality.finish(rate_hz);
   std::erase_if(found_.findings, [this](const Finding& one) { return is_answered(one); });
   for (Finding& one : found_.findings)
     for (Finding::Help& help : one.help)
@@ -454,6 +492,7 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
   kept_ = std::move(is_whole_ ? read_.sums.kept : read_.all);
   make_rate(rate_hz);
   finish(result, rate_hz);
+  doubt_rate(result, rate_hz);
   result.noise_types = noise_types_;
   if (result.fit && !noise_types_.empty())
     result.fit->findings.push_back(

@@ -22,17 +22,6 @@ void forget_wild(std::span<double> samples) {
     if (is_wild(x)) x = std::numeric_limits<double>::quiet_NaN();
 }
 
-void forget_frozen(std::span<double> samples, std::uint64_t fewest) {
-  for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
-    const double value = samples[from];
-    for (to = from + 1; to < samples.size() && samples[to] == value;) ++to;
-    if (to - from >= fewest)
-      std::fill(samples.begin() + static_cast<std::ptrdiff_t>(from),
-                samples.begin() + static_cast<std::ptrdiff_t>(to),
-                std::numeric_limits<double>::quiet_NaN());
-  }
-}
-
 void unwrap_by(double period, std::span<double> samples) {
   double before = std::numeric_limits<double>::quiet_NaN(), turns = 0;
   for (double& x : samples) {
@@ -66,8 +55,12 @@ std::vector<NoiseType> types_of_rate(std::span<const double> rate, double dt_s) 
 
 ValueCensus census_of(const ChannelQuality& quality) {
   if (quality.samples == 0) return {1, 0, 0, 0, 0};
-  return {
-      quality.minimum, quality.maximum, quality.at_minimum, quality.at_maximum, quality.repeats};
+  return {quality.minimum,
+          quality.maximum,
+          quality.at_minimum,
+          quality.at_maximum,
+          quality.repeats,
+          quality.signs.held_times};
 }
 
 void SampleMeters::push(std::span<const double> samples) {
@@ -110,7 +103,8 @@ WelchParts& LeafStage::spectrum() const {
 
 void LeafStage::make_rate(std::vector<double>& samples) const {
   forget_wild(samples);
-  if (options_->frozen > 1) forget_frozen(samples, options_->frozen);
+  if (options_->interpolated > 0) detail::forget_lines(samples, options_->interpolated);
+  if (options_->frozen > 1) detail::forget_frozen(samples, options_->frozen);
   if (options_->unwrap > 0) unwrap_by(options_->unwrap, samples);
   const double nominal = options_->nominal_frequency;
   if (options_->data == SampleKind::frequency && nominal != 0)
@@ -128,7 +122,8 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
   sums.meters = std::move(meters);
   const ChannelQuality found = sums.meters.quality.finish();
   const bool as_it_is = options_->data == SampleKind::rate && found.beyond == 0 &&
-                        options_->frozen <= 1 && !(options_->unwrap > 0);
+                        options_->frozen <= 1 && options_->interpolated == 0 &&
+                        !(options_->unwrap > 0);
   if (!as_it_is) {
     rate_.assign(samples.begin(), samples.end());
     make_rate(rate_);

@@ -1,10 +1,7 @@
 // Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it.
 // A rail has eight samples and twice as many as the neighbourhood (a thousandth of the range, or
-// one and a half times the distance to the next value). Held values: runs of one value. Polled at r
-// times the sensor's rate, runs are floor(r) or ceil(r) long; repeats of coarsely rounded noise
-// come by chance, runs of one among them. Where r < 2, single values are there as well, and the
-// repeats come evenly. Staircase: with s = sqrt(2) sigma / step, neighbours are equal with
-// probability
+// one and a half times the distance to the next value). Staircase: with s = sqrt(2) sigma / step,
+// neighbours are equal with probability
 //   P0 = 2 Phi(1/s) - 1 - s sqrt(2/pi) (1 - exp(-1/(2 s^2))),   .27 at sigma = step,
 // averaged over where between two steps the value stands, which holds while the noise moves it
 // there (sigma > .3 step).
@@ -23,8 +20,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kFewestRuns = 64, kLongestHold = 1024;
-constexpr std::uint64_t kFewestAtRail = 8;
+constexpr std::uint64_t kFewestAtRail = 8, kFewestRepeats = 64;
 constexpr double kMostAtRail =
     0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
 
@@ -45,72 +41,14 @@ DigitalSums::AtRail rail_of(std::span<const double> record,
   return {at, count <= 2 * near + static_cast<double>(kFewestAtRail) ? 0 : count};
 }
 
-/// The length that a share of the runs does not pass.
-std::uint64_t quantile(const ValueRuns& runs, double share) {
-  double sum = 0;
-  for (std::size_t length = 1; length <= kLongestHold; ++length)
-    if ((sum += runs.of_length[length]) >= share * runs.runs) return length;
-  return kLongestHold;
-}
-
-double mean_length(const ValueRuns& runs) {
-  return runs.samples / runs.runs;
-}
-
-/// Standard deviation over mean of the distance between repeats: near 1 by chance.
-double unevenness(const ValueRuns& runs) {
-  const double mean = runs.spacing / runs.repeats;
-  return std::sqrt(std::max(0.0, runs.spacing2 / runs.repeats - mean * mean)) / mean;
-}
-
-ValueRuns runs_of_values(std::span<const double> record) {
-  ValueRuns runs;
-  runs.of_length.assign(kLongestHold + 1, 0.0);
-  std::size_t length = 1;
-  std::uint64_t since = 0;
-  bool first = true;
-  for (std::size_t t = 1; t < record.size(); ++t) {
-    ++since;
-    if (record[t] == record[t - 1]) {
-      ++length;
-      runs.repeats += 1;
-      runs.spacing += static_cast<double>(since);
-      runs.spacing2 += static_cast<double>(since * since);
-      since = 0;
-      continue;
-    }
-    if (!first) {
-      runs.of_length[std::min(length, kLongestHold)] += 1;
-      runs.runs += 1;
-      runs.samples += static_cast<double>(length);
-    }
-    first = false;
-    length = 1;
-  }
-  return runs;
-}
-
-std::optional<HeldValues> held_values(const ValueRuns& runs, double rate_hz) {
-  if (static_cast<double>(kFewestRuns) > runs.runs ||
-      static_cast<double>(kFewestRuns) > runs.repeats)
-    return std::nullopt;
-  const std::uint64_t shortest = quantile(runs, 0.01), longest = quantile(runs, 0.99);
-  const bool every = shortest >= 2 && longest <= 2 * shortest + 1;
-  const bool some = shortest == 1 && longest <= 2 && unevenness(runs) < 0.35;
-  if (!every && !some) return std::nullopt;
-  const double times = mean_length(runs);
-  return HeldValues{times, rate_hz / times};
-}
-
 double chance_of_repeat(double noise_over_step) {
   const double s = std::numbers::sqrt2 * noise_over_step;
   return std::erf(1 / (s * std::numbers::sqrt2)) -
          s * std::sqrt(2 / std::numbers::pi) * -std::expm1(-1 / (2 * s * s));
 }
 
-std::optional<Staircase> staircase(const ValueRuns& runs, double step) {
-  const double repeats = 1 - 1 / std::max(1.0, mean_length(runs));
-  if (!(runs.runs > 0) || repeats <= chance_of_repeat(1)) return std::nullopt;
+std::optional<Staircase> staircase(double repeats, double step) {
+  if (!(repeats > chance_of_repeat(1))) return std::nullopt;
   double low = 0.3, high = 1;
   if (repeats >= chance_of_repeat(low)) return Staircase{step, low * step, true};
   for (int i = 0; i < 40; ++i) {
@@ -124,7 +62,7 @@ std::string with_unit(double value, std::string_view unit) {
   return number_text(value, 3) + (unit.empty() ? "" : " ") + std::string(unit);
 }
 
-void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view unit) {
+void describe_faults(DigitalFaults& faults, std::string_view unit) {
   for (const Rail& rail : faults.rails)
     faults.findings.push_back(
         finding("rail",
@@ -133,14 +71,6 @@ void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view uni
                             percent_text(rail.share),
                             rail.high ? "largest" : "smallest",
                             with_unit(rail.value, unit))));
-  if (faults.held)
-    faults.findings.push_back(finding(
-        "held_values",
-        fmt::format("Each value is recorded {} times on average: the sensor gives {} Hz where the "
-                    "log has {} Hz.",
-                    number_text(faults.held->times, 3),
-                    number_text(faults.held->sensor_rate_hz, 4),
-                    number_text(rate_hz, 4))));
   if (faults.staircase)
     faults.findings.push_back(finding(
         "staircase",
@@ -154,31 +84,12 @@ void describe_faults(DigitalFaults& faults, double rate_hz, std::string_view uni
 
 }  // namespace
 
-ValueCensus value_census(std::span<const double> record) {
-  ValueCensus census;
-  census.low = std::numeric_limits<double>::infinity();
-  census.high = -std::numeric_limits<double>::infinity();
-  for (const double x : record) {  // no comparison holds of a missing sample
-    census.low = x < census.low ? x : census.low;
-    census.high = x > census.high ? x : census.high;
-  }
-  double before = std::numeric_limits<double>::quiet_NaN();
-  for (const double x : record) {
-    census.at_low += x == census.low ? 1 : 0;
-    census.at_high += x == census.high ? 1 : 0;
-    census.repeats += x == before ? 1 : 0;
-    before = x;
-  }
-  return census;
-}
-
 DigitalSums digital_sums(std::span<const double> samples,
                          const ValueCensus& census,
                          std::uint64_t missing) {
   DigitalSums sums;
   sums.present = static_cast<double>(samples.size() - missing);
   if (!(census.low < census.high)) return sums;
-  if (census.repeats >= kFewestRuns) sums.runs = runs_of_values(samples);
   sums.low = rail_of(samples, census, false, sums.present);
   sums.high = rail_of(samples, census, true, sums.present);
   return sums;
@@ -194,34 +105,16 @@ void join(DigitalSums& sums, const DigitalSums& later) {
   add_rail(sums.low, later.low, false);
   add_rail(sums.high, later.high, true);
   sums.present += later.present;
-  ValueRuns& runs = sums.runs;
-  const ValueRuns& more = later.runs;
-  if (more.of_length.empty()) return;
-  if (runs.of_length.empty()) runs.of_length.assign(kLongestHold + 1, 0.0);
-  for (std::size_t length = 0; length < more.of_length.size(); ++length)
-    runs.of_length[length] += more.of_length[length];
-  runs.runs += more.runs;
-  runs.samples += more.samples;
-  runs.repeats += more.repeats;
-  runs.spacing += more.spacing;
-  runs.spacing2 += more.spacing2;
 }
 
 template <class Archive, class Sums>
 static void digital_layout(Archive& at, Sums& sums) {
-  auto& runs = sums.runs;
   at.group("the digital faults of a channel",
            sums.present,
            sums.low.value,
            sums.low.count,
            sums.high.value,
-           sums.high.count,
-           runs.runs,
-           runs.samples,
-           runs.repeats,
-           runs.spacing,
-           runs.spacing2);
-  at(runs.of_length);
+           sums.high.count);
 }
 
 void write_state(const DigitalSums& sums, StateWriter& to) {
@@ -231,18 +124,7 @@ void write_state(const DigitalSums& sums, StateWriter& to) {
 DigitalSums read_digital_sums(StateReader& from) {
   DigitalSums sums;
   digital_layout(from, sums);
-  const std::size_t lengths = sums.runs.of_length.size();
-  if (lengths != 0 && lengths != kLongestHold + 1) from.refuse("the runs of a channel");
   return sums;
-}
-
-DigitalFaults find_digital_faults(std::span<const double> record,
-                                  double rate_hz,
-                                  std::optional<double> step,
-                                  std::string_view unit) {
-  const ValueCensus census = value_census(record);
-  return find_digital_faults(
-      digital_sums(record, census, count_missing(record)), census, rate_hz, step, unit);
 }
 
 DigitalFaults find_digital_faults(const DigitalSums& sums,
@@ -252,10 +134,9 @@ DigitalFaults find_digital_faults(const DigitalSums& sums,
                                   std::string_view unit) {
   DigitalFaults faults;
   if (!(census.low < census.high)) return faults;
-  if (!sums.runs.of_length.empty()) {
-    faults.held = held_values(sums.runs, rate_hz);
-    if (step && !faults.held) faults.staircase = staircase(sums.runs, *step);
-  }
+  if (census.held_times > 1) faults.held = {census.held_times, rate_hz / census.held_times};
+  if (step && !faults.held && census.repeats >= kFewestRepeats)
+    faults.staircase = staircase(static_cast<double>(census.repeats) / sums.present, *step);
   // A staircase may stand on its last step for long.
   if (!faults.staircase) {
     if (sums.low.count > 0 && sums.low.value == census.low)
@@ -263,7 +144,7 @@ DigitalFaults find_digital_faults(const DigitalSums& sums,
     if (sums.high.count > 0 && sums.high.value == census.high)
       faults.rails.push_back({census.high, true, sums.high.count / sums.present});
   }
-  describe_faults(faults, rate_hz, unit);
+  describe_faults(faults, unit);
   return faults;
 }
 

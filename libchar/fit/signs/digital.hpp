@@ -46,20 +46,10 @@ struct DigitalFaults {
 struct ValueCensus {
   double low = 0, high = 0;  ///< low > high: no value at all
   std::uint64_t at_low = 0, at_high = 0, repeats = 0;
+  double held_times = 1;  ///< that each value is recorded, where the log is faster than the sensor
 };
 
-ValueCensus value_census(std::span<const double> record);
-
-/// Lengths of the runs of one value, but for the first and the last: how often which, and how far
-/// apart the repeats are.
-struct ValueRuns {
-  std::vector<double> of_length;  ///< [length], up to 1024; empty: nothing was counted
-  double runs = 0, samples = 0;
-  double repeats = 0, spacing = 0, spacing2 = 0;
-};
-
-/// What is looked at of the samples of a leaf, or of several: their runs, where values repeat at
-/// all, and rails.
+/// Samples of a leaf, or of several, at rails.
 struct DigitalSums {
   struct AtRail {
     double value = 0;
@@ -67,7 +57,6 @@ struct DigitalSums {
   };
   double present = 0;
   AtRail low, high;
-  ValueRuns runs;
 };
 
 /// `census` of the same samples, and how many of them are missing.
@@ -84,12 +73,6 @@ DigitalSums read_digital_sums(StateReader& from);
 /// whatever its length.
 DigitalFaults find_digital_faults(const DigitalSums& sums,
                                   const ValueCensus& census,
-                                  double rate_hz,
-                                  std::optional<double> step = {},
-                                  std::string_view unit = {});
-
-/// The same of samples in memory.
-DigitalFaults find_digital_faults(std::span<const double> record,
                                   double rate_hz,
                                   std::optional<double> step = {},
                                   std::string_view unit = {});

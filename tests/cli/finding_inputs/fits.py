@@ -145,6 +145,14 @@ def clock_of(unit, mean, sd):
     return lambda: {"clock": (unit, [mean + v for v in noise(20000, sd)])}
 
 
+def integral():
+    angle, out = 0.0, []
+    for v in noise(30000):
+        angle += v / RATE
+        out.append(angle)
+    return out
+
+
 ONLY_VERIFY = dict.fromkeys(("allan", "psd", "fit"), "only --verify of characterize simulates")
 INPUTS = {
     "event": fitted("event", lambda: [v + (0.6 if i > 12000 else 0) for i, v in enumerate(noise(30000))]),
@@ -152,7 +160,6 @@ INPUTS = {
     "motion": fitted("motion", motion, truth=N),
     "moves_throughout": fitted("resonance", band_hump),
     "heavy_tails": fitted("laplace", laplace),
-    "held_values": fitted("held", lambda: [v for v in noise(15000) for _ in range(4)]),
     "high_passed": fitted("coupled", high_passed),
     "outliers_in_n": fitted("outliers", outliers),
     "spikes_left_out": fitted("spikes", lambda: spikes(0.0005, 60)),
@@ -183,6 +190,8 @@ INPUTS = {
     "frequency_mean": Input(raw("frequency", clock_of("Hz", 10e6, 1e-3), rate=1), made_by="characterize",
                             analysis=("--data", "frequency"),
                             not_in={"psd": "it takes samples for the quantity itself"}),
+    "looks_integrated": Input(gyro("angle", integral), made_by="characterize",
+                              not_in={"psd": "it fits nothing"}),
     "no_fit": Input(raw("no_fit", hardly_there), made_by="characterize"),
     "not_computed": Input(raw("not_computed", hardly_there), made_by="characterize"),
     "simulation_disagrees": Input(gyro("again", lambda: spikes(0.04, 40)), made_by="characterize",

@@ -33,6 +33,7 @@ OTHER_SEVERITIES = {
     "counter": {"bad"},  # likewise
     "time_unit_guessed": {"caution"},  # another unit is as usual
     "motion": {"bad"},  # more than a tenth of N
+    "interpolated": {"bad"},  # more than a hundredth of the samples
     "stuck": {"bad"},  # more than a hundredth of the samples
     "not_gravity": {"caution"},  # gravity taken out: nothing says a factor
     "slow_channel": {"bad"},  # in the grid of the table

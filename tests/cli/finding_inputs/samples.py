@@ -31,6 +31,14 @@ def frozen():
     return x
 
 
+def interpolated():
+    x = noise(30000)
+    for start in range(1000, 30000, 1500):
+        a, b = x[start], x[start + 120]
+        x[start:start + 121] = [a + (b - a) * i / 120 for i in range(121)]
+    return x
+
+
 def spiky():
     """A pulse of ten samples every 50: no spikes of a sample, and no noise."""
     return [v + (40 * SD if i % 50 < 10 else 0) for i, v in enumerate(noise(30000))]
@@ -69,6 +77,8 @@ INPUTS = {
     "much_saturated": Input(gyro("cut", lambda: clipped(1.5)), made_by="samples"),
     "dead_band": Input(gyro("dead", lambda: [0.0 if abs(v) < 1.5 * SD else v for v in noise(30000)]),
                        made_by="samples"),
+    "held_values": Input(gyro("held", lambda: [v for v in noise(15000) for _ in range(4)]), made_by="samples"),
+    "interpolated": Input(gyro("interpolated", interpolated), made_by="samples", truth=N),
     "stuck": Input(gyro("frozen", frozen), made_by="samples", truth=N),
     "beyond_range": Input(gyro("beyond", lambda: [1e200 if i == 500 else v for i, v in enumerate(noise(30000))]),
                           made_by="samples"),

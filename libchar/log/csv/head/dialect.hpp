@@ -42,6 +42,7 @@ struct StampPart {
   /// what the digits behind the mark count, where they are written without leading zeros ("12.5" is
   /// 12 s and 5 ns); 0 = a fraction
   std::int64_t fraction_ns = 0;
+  bool clock_digits = false;  ///< 125959.5 is 12:59:59.5
 };
 
 /// Rows with another value in this column are left out, or (`must`) refused.

@@ -104,6 +104,59 @@ FirstValues first_numbers(const StampStudy& study, std::size_t column) {
 }
 
 // Seconds after the first, so that a double holds them.
+/// "125959.50" as nanoseconds of the day; nothing where it is no time of day.
+std::optional<std::int64_t> clock_of_digits(std::int64_t digits_ns) {
+  constexpr std::int64_t kSecond = 1000000000;
+  const std::int64_t digits = digits_ns / kSecond, minutes = digits / 100 % 100;
+  if (digits_ns < 0 || digits >= 240000 || minutes >= 60 || digits % 100 >= 60) return std::nullopt;
+  return (digits / 10000 * 3600 + minutes * 60 + digits % 100) * kSecond + digits_ns % kSecond;
+}
+
+/// How many steps are far from the usual one.
+std::size_t odd_steps(const std::vector<double>& values) {
+  const double usual = usual_step(values);
+  std::size_t odd = 0;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    odd += std::fabs(values[i] - values[i - 1] - usual) > 0.5 * std::fabs(usual);
+  return odd;
+}
+
+/// NMEA's hhmmss.ss, and the like: all are times of day, and as such they step more evenly than as numbers.
+bool is_clock_digits(const StampStudy& study, std::size_t column) {
+  const auto times = [&](const std::vector<Cells>& rows, std::size_t at, auto&& take) {
+    for (const Cells& row : rows) {
+      if (at >= row.size()) continue;
+      std::int64_t ns = 0;
+      std::size_t offset = 0;
+      if (read_stamp(row[at].text, study.style.decimal, 1000000000, ns, offset) !=
+          StampDefect::none)
+        continue;
+      const auto clock = clock_of_digits(ns);
+      if (!clock) return false;
+      take(1e-9 * static_cast<double>(ns), 1e-9 * static_cast<double>(*clock));
+    }
+    return true;
+  };
+  if (study.kinds[column] != ColumnKind::number || study.rows.empty() ||
+      column >= study.rows.front().size())
+    return false;
+  std::vector<double> numbers, clocks;
+  bool rises = true;
+  const auto collect = [&](double number, double clock) {
+    rises = rises && (numbers.empty() || number >= numbers.back() || number < 1);
+    numbers.push_back(number);
+    clocks.push_back(clock);
+  };
+  constexpr std::size_t kFewestDigits = 5;  // 9:30:59 is 93059 or 093059
+  const std::string& front = study.rows.front()[column].text;
+  if (std::min(front.find(study.style.decimal), front.size()) < kFewestDigits) return false;
+  if (!times(study.rows, column, collect) || !rises || numbers.size() < 3) return false;
+  numbers.clear();
+  clocks.clear();
+  if (!study.whole_head || !times(study.whole_head(column), 0, collect) || !rises) return false;
+  return odd_steps(clocks) < odd_steps(numbers);
+}
+
 FirstValues first_stamps(const StampStudy& study,
                          const Dialect& dialect,
                          const StampPart& part,
@@ -175,12 +228,14 @@ void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
           of_hour = of_hour || stamp->of_hour;
         }
   constexpr std::int64_t kHour = std::int64_t{3600} * 1000000000;
-  const bool clock_only = study.kinds[main] == ColumnKind::clock && dialect.more_time.column < 0;
+  const bool clock_only = dialect.time.clock_digits ||
+                          (study.kinds[main] == ColumnKind::clock && dialect.more_time.column < 0);
   dialect.clock_period_ns = clock_only ? (of_hour ? kHour : 24 * kHour) : 0;
-  info.dialect.push_back(of_hour      ? "stamps are minutes and seconds of an hour"
-                         : clock_only ? "stamps are times of day"
-                         : zone       ? "calendar stamps, with their time zone"
-                                      : "calendar stamps, as written, without a time zone");
+  info.dialect.push_back(of_hour                     ? "stamps are minutes and seconds of an hour"
+                         : dialect.time.clock_digits ? "stamps are times of day, hhmmss"
+                         : clock_only                ? "stamps are times of day"
+                         : zone                      ? "calendar stamps, with their time zone"
+                                : "calendar stamps, as written, without a time zone");
   info.time.unit = "ns";
   info.time.unit_ns = 1;
   info.time.local = !zone;
@@ -243,6 +298,7 @@ TableFront front_of(const StampStudy& study,
     label.text = second || (c < study.kinds.size() && (study.kinds[c] == ColumnKind::text ||
                                                        study.kinds[c] == ColumnKind::empty));
     if (column.left_out) label.text = true;
+    label.calendar = label.calendar || (!pair && !label.text && is_clock_digits(study, c));
     table.columns.push_back(label);
   }
   table.named = dialect.has_header;
@@ -259,6 +315,13 @@ StampDefect read_part(std::string_view text,
                       const Dialect& dialect,
                       std::int64_t& out,
                       std::size_t& offset) {
+  if (part.clock_digits) {
+    const StampDefect defect = read_stamp(text, dialect.decimal, 1000000000, out, offset);
+    if (defect != StampDefect::none) return defect;
+    const auto clock = clock_of_digits(out);
+    out = clock.value_or(0);
+    return clock ? StampDefect::none : StampDefect::malformed;
+  }
   if (!part.calendar) {
     const std::size_t label = dialect.has_header ? 0 : label_length(text);
     if (const std::size_t mark = text.find(dialect.decimal);
@@ -293,6 +356,9 @@ void choose_stamps(const StampStudy& study,
   const auto part_of = [&](std::size_t column) {
     const bool calendar = column < study.kinds.size() && is_calendar(study.kinds[column]);
     StampPart part{static_cast<int>(column), calendar};
+    part.clock_digits =
+        table.columns[column].calendar && !calendar && (!pair || column != pair->first);
+    part.calendar = part.calendar || part.clock_digits;
     if (!pair || pair->calendar) return part;
     constexpr std::int64_t kSecond = 1000000000;
     if (column == pair->first) part.unit_ns = pair->days ? 86400 * kSecond : kSecond;

@@ -1,0 +1,138 @@
+#include "libchar/log/detail/line_watch.hpp"
+
+#include <algorithm>
+
+#include "libchar/core/numeric/lanes.hpp"
+#include "libchar/log/quality.hpp"
+
+namespace libchar::detail {
+
+// The first two samples of a record have no flag.
+void LineWatch::take(double x, bool direct, std::uint64_t at) {
+  if (n_ == 0) first_ = x;
+  if (n_ == 1) {
+    second_ = x;
+    direct_ = direct;
+  }
+  if (n_ > 1) runs_.push(direct && pair_ && on_line(before_, last_, x), at);
+  pair_ = direct && n_ > 0;
+  before_ = last_;
+  last_ = x;
+  ++n_;
+}
+
+/// Whether two neighbours of x[0..n) have the flag, the one before x[0] among them; x[-3] can be read.
+LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
+  Four any = {};
+  auto found = any != any;
+  std::size_t i = 0;
+  for (; i + 4 <= n; i += 4) {
+    const Four a = LIBCHAR_FOUR(x + i - 3), b = LIBCHAR_FOUR(x + i - 2),
+               c = LIBCHAR_FOUR(x + i - 1), d = LIBCHAR_FOUR(x + i);
+    const Four first = b - a, next = c - b, last = d - c;
+    const Four bend = next - first, more = last - next;
+    found |= (bend * bend <= 0.01 * (first * first)) & (more * more <= 0.01 * (next * next)) &
+             (first != 0.0) & (next != 0.0);
+  }
+  bool out = (found[0] | found[1] | found[2] | found[3]) != 0;
+  for (; i < n; ++i)
+    out |= on_line(x[i - 2], x[i - 1], x[i]) && on_line(x[i - 3], x[i - 2], x[i - 1]);
+  return out;
+}
+constexpr InLanes<any_two_lanes> any_two;
+
+void LineWatch::push(std::span<const double> x,
+                     const unsigned char* starts,
+                     std::size_t i,
+                     std::uint64_t at) {
+  const bool whole = starts == nullptr || (starts[i] == 0 && starts[i - 1] == 0);
+  runs_.push(whole && on_line(x[i - 2], x[i - 1], x[i]), at + i);
+}
+
+// A lone flag is none: most stretches of a noise are passed over at once.
+void LineWatch::block(std::span<const double> x, const unsigned char* starts, std::uint64_t at) {
+  constexpr std::size_t kStretch = 256;
+  const auto begins = [&](std::size_t i) { return starts != nullptr && starts[i] != 0; };
+  std::size_t i = 0;
+  for (; i < std::min<std::size_t>(3, x.size()); ++i) take(x[i], !begins(i), at + i);
+  if (i == x.size()) return;
+  n_ += x.size() - i;
+  coarse_ = coarse_ || (n_ > kEnough && has_chance_lines());
+  if (coarse_) i = x.size();
+  while (i < x.size()) {
+    const std::size_t n = std::min(kStretch, x.size() - i);
+    const bool none = !any_two(&x[i], n);
+    if (none) runs_.push_without(n - 1);
+    for (std::size_t k = none ? n - 1 : 0; k < n; ++k) push(x, starts, i + k, at);
+    i += n;
+  }
+  before_ = x[i - 2];
+  last_ = x[i - 1];
+  pair_ = !begins(i - 1);
+}
+
+void LineWatch::join(const LineWatch& later, bool direct, std::uint64_t at) {
+  if (later.n_ == 0) {
+    pair_ = false;
+    return;
+  }
+  const std::uint64_t own = n_;
+  if (own == 0) {  // nothing but missing samples so far
+    *this = later;
+    runs_ = FlagRuns(kFewest);
+    return runs_.join(later.runs_, at, 2);
+  }
+  coarse_ = coarse_ || later.coarse_;
+  take(later.first_, direct, at);
+  if (later.n_ > 1) take(later.second_, later.direct_, at + 1);
+  runs_.join(later.runs_, at, 2);
+  n_ = own + later.n_;
+  if (later.n_ > 1) {
+    before_ = later.before_;
+    last_ = later.last_;
+    pair_ = later.pair_;
+  }
+}
+
+bool LineWatch::has_chance_lines() const {
+  const std::vector<double>& closed = runs_.closed();
+  return !closed.empty() && 40 * (closed[1] + closed[2]) > static_cast<double>(n_);
+}
+
+std::uint64_t LineWatch::least_run() const {
+  if (coarse_) return 0;
+  constexpr double kChance = 1e-3;
+  const std::vector<double>& closed = runs_.closed();
+  if (closed.empty()) return 0;
+  const double two = closed[2], three = closed[3], goes_on = (three + 1) / (two + 2);
+  double expected = two * goes_on;  // of three
+  for (std::uint64_t length = 4; length <= FlagRuns::kLongestCounted; ++length) {
+    expected *= goes_on;
+    if (length >= kFewest && expected < kChance * (1 - std::min(goes_on, 0.999)))
+      return length <= runs_.longest() ? length : 0;
+  }
+  return 0;
+}
+
+void forget_frozen(std::span<double> samples, std::uint64_t fewest) {
+  for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
+    const double value = samples[from];
+    for (to = from + 1; to < samples.size() && samples[to] == value;) ++to;
+    if (to - from >= fewest)
+      for (double& x : samples.subspan(from, to - from)) x = kMissing;
+  }
+}
+
+void forget_lines(std::span<double> samples, std::uint64_t fewest) {
+  for (std::size_t from = 0, to = 0; from + 2 < samples.size(); from = to - 1) {
+    double a = samples[from], b = samples[from + 1];
+    for (to = from + 2; to < samples.size() && on_line(a, b, samples[to]); ++to) {
+      a = b;
+      b = samples[to];
+    }
+    if (to - from >= fewest)
+      for (double& x : samples.subspan(from + 1, to - from - 2)) x = kMissing;
+  }
+}
+
+}  // namespace libchar::detail
