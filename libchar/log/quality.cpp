@@ -169,6 +169,8 @@ struct BlockSums {
   double jump = 0;                        // largest |x - before|
   double s1 = 0, s2 = 0, s3 = 0, s4 = 0;  // sums of powers of x - before
   bool repeats = false;                   // some difference is zero
+  std::uint64_t zeros = 0;
+  double nearest = 0;  // least |x| other than zero
 };
 
 /// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every
@@ -180,6 +182,8 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
   Four sum = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
   auto repeats = low != low;  // none yet
+  auto zeros = repeats;       // counted down
+  Four near = low * 0 + __builtin_inf();
   const std::size_t whole = n - n % 4;
   for (std::size_t i = 0; i < whole; i += 4) {
     const Four v = LIBCHAR_FOUR(x + i), d = v - LIBCHAR_FOUR(before + i), q = d * d;
@@ -187,6 +191,9 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
     low = v < low ? v : low;
     high = v > high ? v : high;
     repeats |= d == 0.0;
+    const Four size = v < 0.0 ? -v : v;
+    zeros += v == 0.0;
+    near = (size < near) & (v != 0.0) ? size : near;
     top = q > top ? q : top;
     a1 += d;
     a2 += q;
@@ -200,6 +207,8 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
     low[k] = v < low[k] ? v : low[k];
     high[k] = v > high[k] ? v : high[k];
     repeats[k] |= d == 0 ? -1 : 0;
+    zeros[k] -= v == 0 ? 1 : 0;
+    if (v != 0) near[k] = std::min(near[k], std::fabs(v));
     top[k] = std::max(top[k], q);
     a1[k] += d;
     a2[k] += q;
@@ -214,7 +223,9 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
           fold(a2),
           fold(a3),
           fold(a4),
-          (repeats[0] | repeats[1] | repeats[2] | repeats[3]) != 0};
+          (repeats[0] | repeats[1] | repeats[2] | repeats[3]) != 0,
+          static_cast<std::uint64_t>(-(zeros[0] + zeros[1] + zeros[2] + zeros[3])),
+          std::min({near[0], near[1], near[2], near[3]})};
 }
 constexpr InLanes<sums_of_lanes> sums_of;
 
@@ -581,12 +592,24 @@ struct Beginning {
 /// Values in a row: no noise of many levels repeats so often.
 constexpr std::uint64_t kFrozenRun = 8;
 
+/// Samples that are exactly zero, and how near the others come to it.
+struct ZeroWatch {
+  std::uint64_t count = 0;
+  double nearest = __builtin_inf();
+
+  void join(std::uint64_t more, double near) {
+    count += more;
+    nearest = std::min(nearest, near);
+  }
+};
+
 struct OddValues {
   CounterWatch counter;
   WrapWatch wraps;
   RestingValue resting;
   detail::FlagRuns same{kFrozenRun - 1};  // equal to the one before; the first sample has no flag
   detail::LineWatch lines;
+  ZeroWatch zero;
 };
 
 }  // namespace
@@ -642,7 +665,7 @@ void QualityMeter::State::layout(auto& at, auto& s) {
   DistinctValues::layout(at, s.distinct);
   WrapWatch::layout(at, s.odd.wraps);
   at(s.odd.resting.value);
-  at(s.odd.resting.count);
+  at(s.odd.resting.count, s.odd.zero.count, s.odd.zero.nearest);
   CounterWatch::layout(at, s.odd.counter);
   Extreme::layout(at, s.top);
   Extreme::layout(at, s.bottom);
@@ -749,6 +772,7 @@ void QualityMeter::State::process(const double* x,
   maximum = std::max(maximum, sums.high);
   if (const double range = maximum - minimum; range > 0 && sums.jump >= WrapWatch::kJump * range)
     odd.wraps.block(x, before, n, range);
+  odd.zero.join(sums.zeros, sums.nearest);
   differences.add(sums);
   differences.n += static_cast<double>(n - breaks);
   top.block(x, n, sums.high);
@@ -873,6 +897,36 @@ std::vector<Interval> times_of(const std::vector<ChannelQuality::Signs::Place>& 
   return out;
 }
 
+/// Zeros among values that hardly repeat: they stand for no reading, or for all values near them. True where found.
+bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
+  constexpr std::uint64_t kFewest = 20;
+  constexpr double kLeastShare = 5e-4, kTimes = 5, kApart = 20, kBand = 0.01, kRestless = 0.5;
+  const std::uint64_t alone = q.signs.zeros - std::min(q.signs.zeros, q.signs.frozen);
+  if (q.distinct_values <= 16 || 2 * alone < q.signs.zeros || q.signs.zeros < kFewest) return false;
+  if (!(q.minimum < 0) || !(q.maximum > 0) || !(q.difference_sd > kRestless * q.standard_deviation))
+    return false;
+  const double n = static_cast<double>(q.samples), share = static_cast<double>(q.signs.zeros) / n;
+  const double step = q.resolution.value_or(0);
+  const double density = 1 / (std::sqrt(2 * std::numbers::pi) * q.standard_deviation);
+  if (share < kLeastShare + kTimes * step * density) return false;
+  const bool band =
+      share > kBand && q.signs.nearest_to_zero > kApart * std::max(step, 1 / (2 * n * density));
+  Finding found = finding(
+      band ? "dead_band" : "missing_mark",
+      band ? fmt::format("{} of the samples are exactly 0, and no other comes nearer to it than "
+                         "{}: a dead band, and "
+                         "noise at rest cannot be measured from this",
+                         percent_text(share),
+                         brief_text(q.signs.nearest_to_zero, 3))
+           : fmt::format(
+                 "0 occurs {} times among values that hardly repeat: a mark for missing values?",
+                 q.signs.zeros));
+  found.count = q.signs.zeros;
+  if (!band) found.help.push_back({"Say that it means missing.", {{"missing", "0"}}});
+  out.push_back(std::move(found));
+  return true;
+}
+
 /// Runs of one value, where values do not repeat anyway, as they do between coarse steps. What repeats outside of them
 /// gives the chance of a run among these samples; a record that holds all of its values has a rhythm,
 /// and a quantity that changes little from sample to sample may rest.
@@ -989,6 +1043,7 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
     return;
   }
   judge_held(q, rate_hz, out);
+  if (judge_zeros(q, out)) return;
   judge_runs(q, rate_hz, out);
   judge_lines(q, rate_hz, out);
 }
@@ -1046,6 +1101,7 @@ void QualityMeter::State::join(const State& later) {
   }
   odd.wraps.join(later.odd.wraps);
   odd.resting.join(later.odd.resting);
+  odd.zero.join(later.odd.zero.count, later.odd.zero.nearest);
   differences.join(later.differences);
   odd.counter.join(later.odd.counter, step, later.beginning.value);
   for (const double value : later.distinct.values())
@@ -1161,6 +1217,8 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   }
   q.signs.resting_value = state.odd.resting.value;
   q.signs.at_rest = state.odd.resting.count;
+  q.signs.zeros = state.odd.zero.count;
+  q.signs.nearest_to_zero = state.odd.zero.nearest;
   q.at_minimum = state.bottom.count;
   q.at_maximum = state.top.count;
   q.repeats = state.odd.same.set();

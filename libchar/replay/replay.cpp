@@ -599,6 +599,27 @@ void Replay::refuse_sizes() const {
       .hint("give the sensors a `scale` and a `unit`");
 }
 
+// A constant that all sensors share against the reference: a mounting, a zero.
+void doubt_offset(ReplayResult& out) {
+  constexpr double kShare = 0.5, kTimes = 3;
+  if (!out.has_reference || !out.best || out.reference_offset) return;
+  AlgorithmResult& best = out.algorithms[*out.best];
+  if (best.inputs.empty()) return;
+  const InputScore& score = best.inputs.front();
+  const double bias = std::abs(score.error.bias), rmse = score.error.rmse,
+               width = 0.5 * (score.error.bias_ci95.high - score.error.bias_ci95.low);
+  if (!(bias * bias > kShare * rmse * rmse) || !(bias > kTimes * width)) return;
+  Finding& found = best.remarks.add(
+      "constant_error",
+      fmt::format(
+          "{} of the mean square error is a constant, {}{}: "
+          "an offset of the reference or of the sensors",
+          percent_text(bias * bias / (rmse * rmse)),
+          number_text(score.error.bias, 3),
+          out.inputs.empty() || out.inputs[0].unit.empty() ? "" : " " + out.inputs[0].unit));
+  found.help.push_back({"Take it out of the reference.", {{"reference_offset", "estimate"}}});
+}
+
 // What the methods that are recommended say of themselves is about the verdict.
 void add_doubts_of_chosen(ReplayResult& out) {
   for (std::size_t i = 0; i < out.algorithms.size(); ++i) {
@@ -608,6 +629,7 @@ void add_doubts_of_chosen(ReplayResult& out) {
       if (one.severity != Severity::note) {
         Finding& added = out.warnings.add(one.code, one.sentence, {}, one.count);
         added.subject = a.label;
+        added.help = one.help;
       }
   }
 }
@@ -664,6 +686,7 @@ ReplayResult Replay::collect() {
       if (run.planned().asked && algorithm.label == run.planned().label)
         algorithm.sd_factor = run.sd_factor();
   out.learnt = learnt_;
+  doubt_offset(out);
   add_doubts_of_chosen(out);
   out.learnt.findings = out.warnings.list();
   if (out.best) out.learnt.recommended = out.algorithms[*out.best].label;

@@ -393,7 +393,6 @@ def command(code, made, folder):
     if one:
         check_severity(code, one, f"{verb} --json")
         check_sentence(code, one)
-    Case(code, made, folder).follow(next_line(text.stdout))
     if verb == "replay" and one:
         page = (folder / "replay/report.html").read_text()
         cell(code, "page", "HTML", f'title="{code}"' in page or says(page, one))
@@ -402,6 +401,7 @@ def command(code, made, folder):
         why = "" if touches and kinds[code][0] != "note" else "it changes no weight"
         if fused.exists():
             cell(code, "fusion.yaml", "YAML", f'code: "{code}"' in fused.read_text(), why)
+    Case(code, made, folder).follow(next_line(text.stdout))  # may write the same files again
 
 
 done = [code for code in inputs.PARTS[part] if not only or code in only]

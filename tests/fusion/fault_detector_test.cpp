@@ -297,6 +297,39 @@ TEST_CASE("minque: a noisy sensor is weighed, not dropped") {
   CHECK(error_rms((out.x.row(0) - g.x).segment(9000, 10000)) < .0420);
 }
 
+TEST_CASE("minque: noise of heavy tails is no fault, and a fault in it is found") {
+  const auto student = [](test::Gaussian& gauss) {  // of four degrees of freedom and deviation one
+    double squares = 0;
+    for (int k = 0; k < 4; ++k) {
+      const double v = gauss();
+      squares += v * v;
+    }
+    return gauss() / std::sqrt(squares / 4) / std::sqrt(2.0);
+  };
+  const auto rare = [](test::Gaussian& gauss) {
+    return gauss() + (gauss.uniform() < 2e-3 ? 9 : 0);
+  };
+  const std::vector<std::function<double(test::Gaussian&)>> kinds = {student, rare};
+  for (const auto& noise : kinds)
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+      Gyroscopes g = gyroscopes(40000, seed);
+      test::Gaussian gauss(100 + seed);
+      for (Eigen::Index k = 0; k < g.y.cols(); ++k)
+        for (Eigen::Index i = 0; i < 6; ++i) g.y(i, k) = g.x[k] + 0.1 * noise(gauss);
+      auto clean = test::make("minque", g.array);
+      test::run(*clean, g.y);
+      CHECK(clean->faults()->events().empty());
+      for (Eigen::Index k = 30000; k < g.y.cols(); ++k) g.y(2, k) += 0.3;
+      auto hit = test::make("minque", g.array);
+      test::run(*hit, g.y);
+      const auto events = hit->faults()->events();
+      REQUIRE(events.size() == 1);
+      CHECK(events[0].channel == 2);
+      CHECK(events[0].sample >= 30000);
+      CHECK(events[0].sample < 30040);
+    }
+}
+
 TEST_CASE("minque: three against three is said, and nobody is thrown out") {
   Gyroscopes g = gyroscopes(12000, 51);
   g.y.topRows(3).rightCols(4000) *= .9;

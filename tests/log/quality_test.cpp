@@ -146,6 +146,29 @@ TEST_CASE("short runs of one value are frozen stretches where values do not repe
   CHECK_FALSE(has(meter(coarse).findings, "stuck"));
 }
 
+TEST_CASE(
+    "zeros among values that hardly repeat are marks, or a dead band; those of a coarse sensor are "
+    "values") {
+  const std::vector<double> x = gaussian(50000, 1);
+  CHECK(meter(x).findings.empty());
+  std::vector<double> filled = x, dead = x, coarse = x, moving = x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (i * 7919 % 1000 < 20) filled[i] = 0;
+    if (std::fabs(dead[i]) < 0.2) dead[i] = 0;
+    coarse[i] = std::round(x[i] / 0.05) * 0.05;
+    moving[i] = i % 5000 < 500 ? 0 : std::sin(0.01 * static_cast<double>(i)) + 1e-3 * x[i];
+  }
+  const ChannelQuality q = meter(filled);
+  CHECK(q.signs.zeros == 1000);
+  REQUIRE(has(q.findings, "missing_mark"));
+  CHECK(q.findings[0].help.at(0).options.at(0).value == "0");
+  CHECK(has(meter(dead).findings, "dead_band"));
+  CHECK_FALSE(has(meter(dead).findings, "missing_mark"));
+  CHECK_FALSE(has(meter(coarse).findings, "missing_mark"));
+  CHECK_FALSE(has(meter(coarse).findings, "dead_band"));
+  CHECK_FALSE(has(meter(moving).findings, "missing_mark"));
+}
+
 TEST_CASE("two marks side by side are marks, and no jumps of a phase") {
   std::vector<double> x = gaussian(20000, 1);
   for (std::size_t i = 100; i < x.size(); i += 250) x[i] = i % 500 == 100 ? -99 : -98;

@@ -196,6 +196,8 @@ def tilt(folder, sign=1):
 SMOOTHED = ("--set", "virtual-sensor.smoothed=1")
 INPUTS = {
     "frozen_sensor": asked(replay(held("c", 3000, N_ROWS))),
+    "constant_error": asked(replay(lambda made: made | {"ref": [v + 3 for v in made["ref"]]}, ("--learning", "0..5"),
+                                   algorithms="mean,median")),
     "constant_sensor": asked(replay(set_to("b", lambda made: [0.5] * N_ROWS), sensors="a,b")),
     "copied_sensor": asked(replay(set_to("c", lambda made: list(made["a"])))),
     "sensor_without_samples": asked(replay(short_lived, ("--learning", "0..30"))),

@@ -16,6 +16,9 @@ namespace {
 /// Beyond it a residual is not learnt from, and its square proves nothing more.
 constexpr double kClip = 6, kMostDeviations = 1e6;
 constexpr double kMostRecent = 1e6;
+/// P(|z| > FaultBaseline::kTail) of Gaussian noise; beyond four times as much the tails are heavy.
+constexpr double kGaussTail = 6.33e-5, kHeavy = 4;
+constexpr double kUntoldClip = 4, kFewestForTail = 1500, kChance = 1.5;
 /// Long-run variance ratio that nothing is known of, and blocks that it is worth.
 constexpr double kUntoldRatio = 16, kUntoldBlocks = 8;
 /// An excess below this is scatter.
@@ -76,6 +79,8 @@ LIBCHAR_LANES void standardise_all_lanes(double* q,
   const double a = 1 / FaultBaseline::kRecent, root = std::sqrt(inverse_excess);
   const Four least = {-kMostDeviations, -kMostDeviations, -kMostDeviations, -kMostDeviations};
   const Four most = -least;
+  const Four tail = {
+      FaultBaseline::kTail, FaultBaseline::kTail, FaultBaseline::kTail, FaultBaseline::kTail};
   const Four most_recent = {kMostRecent, kMostRecent, kMostRecent, kMostRecent};
   for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
     const Four x = LIBCHAR_GROUP(kX), dx = LIBCHAR_GROUP(kDx), here = LIBCHAR_GROUP(kHere);
@@ -89,18 +94,21 @@ LIBCHAR_LANES void standardise_all_lanes(double* q,
     const Four low = standard < least ? least : standard;
     const Four z = low > most ? most : low;
     LIBCHAR_GROUP_TO(kZ) = z;
+    const Four end = LIBCHAR_GROUP(kClip);
+    const Four above = z < -end ? -end : z, c = above > end ? end : above;
     const Four now = here * LIBCHAR_GROUP(kArmed), u = x * LIBCHAR_GROUP(kUnitX) * now;
-    LIBCHAR_FOUR_TO(out.z + i) = now * z * LIBCHAR_GROUP(kScaleBias) * root;
+    LIBCHAR_FOUR_TO(out.z + i) = now * c * LIBCHAR_GROUP(kScaleBias) * root;
     LIBCHAR_FOUR_TO(out.present + i) = now;
-    LIBCHAR_FOUR_TO(out.uz + i) = u * z * LIBCHAR_GROUP(kScaleGain) * root;
+    LIBCHAR_FOUR_TO(out.uz + i) = u * c * LIBCHAR_GROUP(kScaleGain) * root;
     LIBCHAR_FOUR_TO(out.uu + i) = u * u;
     LIBCHAR_FOUR_TO(out.zz + i) =
-        now * ((z * z * inverse_excess - 1) * LIBCHAR_GROUP(kScaleNoise) + 1);
+        now * ((c * c * inverse_excess - 1) * LIBCHAR_GROUP(kScaleNoise) + 1);
     LIBCHAR_GROUP_TO(kSumZ) = LIBCHAR_GROUP(kSumZ) + z;
     LIBCHAR_GROUP_TO(kSumXz) = LIBCHAR_GROUP(kSumXz) + x * z;
     LIBCHAR_GROUP_TO(kSumXx) = LIBCHAR_GROUP(kSumXx) + x * x;
     LIBCHAR_GROUP_TO(kSumZz) = LIBCHAR_GROUP(kSumZz) + z * z;
     LIBCHAR_GROUP_TO(kSumN) = LIBCHAR_GROUP(kSumN) + here;
+    LIBCHAR_GROUP_TO(kSumTail) = LIBCHAR_GROUP(kSumTail) + (z * z > tail * tail ? here : here * 0);
     LIBCHAR_GROUP_TO(kCount) = LIBCHAR_GROUP(kCount) + here;
     const Four square = z * z < most_recent ? z * z : most_recent,
                recent = LIBCHAR_GROUP(kRecentSquare);
@@ -141,6 +149,18 @@ constexpr InLanes<learn_all_lanes> learn_all;
 
 #undef LIBCHAR_GROUP
 #undef LIBCHAR_GROUP_TO
+
+// A sum with the slope t is worth e^S of false alarms while E exp(t z - t^2/2) <= 1. A share p of samples beyond c adds
+// p exp(t c - t^2/2) to it, of the steepest row at most kTailPart. Short of tails that are heavier than Gauss's,
+// nothing
+// is cut: the steepest row answers a gross fault at once.
+double clip_of(double tails, double of) {
+  constexpr double kSteepest = 2.8, kTailPart = 0.2, kLeast = 2.5;
+  if (of < kFewestForTail) return kUntoldClip;
+  if (tails <= kChance + kHeavy * kGaussTail * of) return kMostDeviations;
+  return std::max(kLeast,
+                  (kSteepest * kSteepest / 2 + std::log(kTailPart * of / tails)) / kSteepest);
+}
 
 double believed(double ratio, double blocks, bool trusted) {
   // What the scatter of so few blocks alone would show is not believed.
@@ -187,15 +207,15 @@ FaultBaseline::FaultBaseline(std::size_t sensors)
       sum_xx(column(kSumXx)),
       sum_zz(column(kSumZz)),
       sum_n(column(kSumN)),
+      sum_tail(column(kSumTail)),
+      clip(column(kClip)),
       recent(column(kRecentSquare)),
       y(padded, 0.0),
-      long_bias(padded, 1.0),
-      long_gain(padded, 1.0),
-      long_noise(padded, 1.0),
-      blocks(padded, 0.0) {
+      long_run(padded) {
   for (SensorColumn* one :
        {&bias_var, &s, &start_margin, &recent, &scale_bias, &scale_gain, &scale_noise})
     one->fill(1);
+  clip.fill(kUntoldClip);
   gain_var.fill(kPriorGain * kPriorGain);
   delay_var.fill(kPriorDelay * kPriorDelay);
 }
@@ -240,8 +260,11 @@ void FaultBaseline::renew(double count_memory) {
     bias_floor[i] = s[i] / memory;
     gain_floor[i] = least(square_x[i], kPriorGain);
     delay_floor[i] = least(square_dx[i], kPriorDelay);
-    // Where the input stands still there is nothing that a gain could show.
-    unit_x[i] = 1 / std::sqrt(std::max(square_x[i], 16 * s[i]));
+    // Where the input stands still there is nothing that a gain could show; outliers would be input and residual at
+    // once.
+    const bool still = square_x[i] < 16 * s[i];
+    unit_x[i] =
+        still && clip[i] < kMostDeviations ? 0 : 1 / std::sqrt(std::max(square_x[i], 16 * s[i]));
     start_margin[i] = 1 + 2 * std::sqrt(2 / std::clamp(count[i], 8.0, count_memory));
   }
 }
@@ -251,35 +274,40 @@ void FaultBaseline::end_block(bool trusted, const std::vector<double>& tops, dou
     const double m = sum_n[i];
     if (m < kLeastOfBlock || tops[i] > frozen) continue;
     const double off = sum_zz[i] - m;
-    blocks[i] += 1;
-    const double a = std::max(1 / kBlockMemory, 1 / (blocks[i] + 1));
+    long_run.blocks[i] += 1;
+    const double a = std::max(1 / kBlockMemory, 1 / (long_run.blocks[i] + 1));
     const auto follow = [&](double& ratio, double now) {
       ratio += a * (std::min(now, 1e4) - ratio);
     };
-    follow(long_bias[i], sum_z[i] * sum_z[i] / m);
-    follow(long_gain[i], sum_xx[i] > 0 ? sum_xz[i] * sum_xz[i] / sum_xx[i] : 1);
-    follow(long_noise[i], off * off / (2 * m));
-    const double b = std::min(blocks[i], kBlockMemory);
-    const double bias_ratio = believed(long_bias[i], b, trusted);
+    follow(long_run.bias[i], sum_z[i] * sum_z[i] / m);
+    follow(long_run.gain[i], sum_xx[i] > 0 ? sum_xz[i] * sum_xz[i] / sum_xx[i] : 1);
+    follow(long_run.noise[i], off * off / (2 * m));
+    const double b = std::min(long_run.blocks[i], kBlockMemory);
+    const double bias_ratio = believed(long_run.bias[i], b, trusted);
     scale_bias[i] = 1 / std::sqrt(bias_ratio);
-    scale_gain[i] = 1 / std::sqrt(believed(long_gain[i], b, trusted));
+    scale_gain[i] = 1 / std::sqrt(believed(long_run.gain[i], b, trusted));
+    // What so few samples cannot tell is taken for heavy.
+    const double kept = std::min(1.0, kBlockMemory * kBlock / (long_run.tails_of[i] + m));
+    long_run.tails[i] = kept * (long_run.tails[i] + sum_tail[i]);
+    long_run.tails_of[i] = kept * (long_run.tails_of[i] + m);
+    clip[i] = clip_of(long_run.tails[i], long_run.tails_of[i]);
     // A mean that wanders is no noise either.
-    scale_noise[i] = 1 / std::max(std::sqrt(believed(long_noise[i], b, trusted)), bias_ratio);
+    scale_noise[i] = 1 / std::max(std::sqrt(believed(long_run.noise[i], b, trusted)), bias_ratio);
   }
   clear_block();
 }
 
 void FaultBaseline::clear_block() {
-  for (SensorColumn* v : {&sum_z, &sum_xz, &sum_xx, &sum_zz, &sum_n}) v->fill(0);
+  for (SensorColumn* v : {&sum_z, &sum_xz, &sum_xx, &sum_zz, &sum_n, &sum_tail}) v->fill(0);
 }
 
 void FaultBaseline::forget_blocks(bool trusted) {
   const double ratio = trusted ? 1 : kUntoldRatio;
-  for (std::vector<double>* v : {&long_bias, &long_gain, &long_noise})
+  for (std::vector<double>* v : {&long_run.bias, &long_run.gain, &long_run.noise})
     std::fill(v->begin(), v->end(), ratio);
   for (SensorColumn* v : {&scale_bias, &scale_gain}) v->fill(1 / std::sqrt(ratio));
   scale_noise.fill(1 / ratio);
-  std::fill(blocks.begin(), blocks.end(), trusted ? 0.0 : kUntoldBlocks);
+  std::fill(long_run.blocks.begin(), long_run.blocks.end(), trusted ? 0.0 : kUntoldBlocks);
   clear_block();
 }
 

@@ -14,7 +14,8 @@
 //
 //   l_bias = mean (sum z)^2 / n,   l_gain = mean (sum x z)^2 / sum x^2,   l_noise = mean (sum z^2 - n)^2 / 2n
 //
-// and the evidence of the bank is divided by it. Where most sensors are off at once (a motion that was not
+// and the evidence of the bank is divided by it. Tails heavier than Gauss's are cut where the bank's sums would
+// not be worth their false alarms otherwise (`clip`). Where most sensors are off at once (a motion that was not
 // there before), the median over the sensors of their z^2 in the last instants says by how much residuals
 // are larger than expected: all z^2 are divided by it (`excess`).
 
@@ -84,6 +85,8 @@ struct FaultBaseline {
     kSumXx,
     kSumZz,
     kSumN,
+    kSumTail,
+    kClip,
     kRecentSquare,
     kKinds
   };
@@ -107,10 +110,23 @@ struct FaultBaseline {
   SensorColumn start_margin;  ///< variances are taken for so many times larger
   SensorColumn scale_bias, scale_gain, scale_noise;   ///< 1 / sqrt of the long-run ratios believed
   SensorColumn sum_z, sum_xz, sum_xx, sum_zz, sum_n;  ///< of the block
+  SensorColumn sum_tail;                              ///< of the block: samples with |z| > kTail
+  SensorColumn clip;                                  ///< what is beyond proves nothing more
   SensorColumn recent;                                ///< mean of z^2 over the last kRecent samples
   std::vector<double> y;                              ///< sample, then less its slow mean
-  std::vector<double> long_bias, long_gain, long_noise;  ///< long-run variance ratios
-  std::vector<double> blocks;
+  /// Of the blocks so far, a sensor each.
+  struct LongRun {
+    std::vector<double> bias, gain, noise;  ///< variance ratios
+    std::vector<double> blocks;             ///< how many
+    std::vector<double> tails, tails_of;    ///< samples with |z| > kTail, of so many
+    explicit LongRun(std::size_t padded)
+        : bias(padded, 1.0),
+          gain(padded, 1.0),
+          noise(padded, 1.0),
+          blocks(padded, 0.0),
+          tails(padded, 0.0),
+          tails_of(padded, 0.0) {}
+  } long_run;
   double excess = 1;  ///< median of `recent`, where it is clearly above one
 
   /// Memory in samples; x and dx have shorter ones.
@@ -118,6 +134,7 @@ struct FaultBaseline {
   static constexpr double kRecent = 200;
   static constexpr int kBlock = 512;
   static constexpr int kLeastOfBlock = kBlock / 8;
+  static constexpr double kTail = 4;
 
   /// f, here and y → x, dx and y less its slow mean.
   void predict();
