@@ -493,7 +493,7 @@ LogInfo read_log(const std::string& log,
   warn_of_unused(info.channels, options, warnings);
   take_grid(known, info);
   for (std::size_t c = 0; c < info.channels.size(); ++c)
-    info.channels[c].every = grid.clocks().every(c);
+    info.channels[c].every = std::max(info.channels[c].every, grid.clocks().every(c));
   refuse_without_samples(info, options);
   judge_values(watch, info, options, warnings);
   warn_of_units(options, warnings);
