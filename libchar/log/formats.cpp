@@ -22,7 +22,11 @@
   FORMAT(hdf5)                      \
   FORMAT(matlab)                    \
   FORMAT(imu)                       \
+  FORMAT(wav)                       \
+  FORMAT(xlsx)                      \
+  FORMAT(tables)                    \
   FORMAT(raw)                       \
+  FORMAT(jsonl)                     \
   FORMAT(csv)
 
 // A build may bring formats of its own, which are asked first: -D'LIBCHAR_MORE_LOG_FORMATS(FORMAT)=FORMAT(mine)'.

@@ -81,6 +81,7 @@ hid_t native_of(NumberType type) {
       return H5T_NATIVE_INT16;
     case NumberType::u16:
       return H5T_NATIVE_UINT16;
+    case NumberType::i24:
     case NumberType::i32:
       return H5T_NATIVE_INT32;
     case NumberType::u32:

@@ -10,13 +10,15 @@
 #include <string>
 #include <string_view>
 
+#include "libchar/core/finding.hpp"
+
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz, utf16le, utf16be };
+enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json };
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);
-inline constexpr std::size_t kPackingBytes = 6;  ///< that it looks at
+inline constexpr std::size_t kPackingBytes = 64;  ///< that it looks at
 
 class Unpacker {
  public:
@@ -26,6 +28,9 @@ class Unpacker {
   /// The stored data ended before their end mark.
   virtual bool cut() const = 0;
   virtual std::string_view what() const { return "compressed"; }
+  /// In the table of formats; of others than csv the text is made by this program, with commas and points.
+  virtual std::string_view format() const { return "csv"; }
+  virtual void finish(Findings& findings) const { static_cast<void>(findings); }
 };
 
 /// `stored` gives the file's bytes, 0 at its end. Throws Error(input) where this build lacks the library.

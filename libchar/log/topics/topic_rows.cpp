@@ -15,6 +15,7 @@
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/odd_values.hpp"
+#include "libchar/log/tables/table_reader.hpp"
 
 namespace libchar {
 
@@ -445,6 +446,10 @@ std::unique_ptr<RowSource> open_topic_rows(std::unique_ptr<TopicReader> reader,
                                            const std::string& path,
                                            std::string_view format,
                                            const ReadOptions& options) {
+  if (auto* tables = dynamic_cast<TableReader*>(reader.get())) {
+    static_cast<void>(reader.release());
+    return open_table_rows(std::unique_ptr<TableReader>(tables), path, format, options);
+  }
   return std::make_unique<TopicRows>(std::move(reader), path, format, options);
 }
 
