@@ -16,17 +16,17 @@ struct TypeName {
   std::size_t size;
 };
 constexpr std::array<TypeName, kNumberTypes> kTypes = {{{"f16", 2},
-                                              {"f32", 4},
-                                              {"f64", 8},
-                                              {"i8", 1},
-                                              {"i16", 2},
-                                              {"i24", 3},
-                                              {"i32", 4},
-                                              {"i64", 8},
-                                              {"u8", 1},
-                                              {"u16", 2},
-                                              {"u32", 4},
-                                              {"u64", 8}}};
+                                                        {"f32", 4},
+                                                        {"f64", 8},
+                                                        {"i8", 1},
+                                                        {"i16", 2},
+                                                        {"i24", 3},
+                                                        {"i32", 4},
+                                                        {"i64", 8},
+                                                        {"u8", 1},
+                                                        {"u16", 2},
+                                                        {"u32", 4},
+                                                        {"u64", 8}}};
 
 template <std::size_t size>
 using Bits = std::conditional_t<
