@@ -89,7 +89,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
   if (detail::is_folder_of_tables(path)) return *find_format("tables");
   const std::string front = front_of(path);
   const csv::Packing packing = csv::packing_of(front);
-  if (packing != csv::Packing::none && packing != csv::Packing::json) return packed_format(path);
+  if (packing != csv::Packing::none && packing < csv::Packing::json) return packed_format(path);
   for (const Format& format : formats())
     if (format.certain != nullptr && format.certain(front)) return format;
   if (const Format* format = format_by_suffix(path)) return *format;

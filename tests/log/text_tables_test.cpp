@@ -95,6 +95,48 @@ TEST_CASE("JSON that is broken is refused with the number of the object, a cut e
   CHECK(log.info.warnings.find("compressed_cut") != nullptr);
 }
 
+namespace {
+
+std::string lvm(const std::string& columns, const std::string& body) {
+  return "LabVIEW "
+         "Measurement\t\nSeparator\tTab\nDecimal_Separator\t,\nMulti_Headings\tYes\nX_Columns\t" +
+         columns + "\nDate\t2026/11/22\n***End_of_Header***\t\n\t\n" + body;
+}
+
+std::string segment(const std::string& clock, const std::string& x0, const std::string& names) {
+  return "Channels\t2\t\t\nSamples\t2\t2\nTime\t" + clock + "\t" + clock +
+         "\nY_Unit_Label\tVolts\tVolts\nX0\t" + x0 + "\t" + x0 +
+         "\nDelta_X\t0,01\t0,01\n***End_of_Header***\t\t\n" + names + "\tComment\n";
+}
+
+}  // namespace
+
+TEST_CASE("LabVIEW: time in one column, in equal ones, or in none; segments go on") {
+  const std::string two = "X_Value\tA\tB";
+  const auto read = [](const std::string& text) {
+    return read_recording(Written("a.lvm", text).path);
+  };
+  const Recording one =
+      read(lvm("One",
+               segment("12:00:00,5", "0", two) + "0,00\t1,5\t2\tready\n0,01\t2,5\t3\n\t\n" +
+                   segment("12:00:00,52", "0", two) + "0,00\t3,5\t4\n0,01\t4,5\t5\n"));
+  CHECK(names(one) == "A[Volts] B[Volts] ");
+  CHECK(one.info.time.rate_hz == Approx(100));
+  CHECK(one.samples[0] == std::vector<double>{1.5, 2.5, 3.5, 4.5});
+  const Recording none =
+      read(lvm("No", segment("12:00:00,5", "0", two) + "\t1\t2\n\t2\t3\n\t3\t4\n\t4\t5\n"));
+  CHECK(none.info.time.rate_hz == Approx(100));
+  CHECK(none.samples[1] == std::vector<double>{2, 3, 4, 5});
+  const std::string multi = segment("12:00:00,5", "0", "X_Value\tA\tX_Value\tB");
+  const Recording each =
+      read(lvm("Multi", multi + "0,00\t1\t0,00\t2\n0,01\t2\t0,01\t3\n0,02\t3\t0,02\t4\n"));
+  CHECK(each.samples[1] == std::vector<double>{2, 3, 4});
+  CHECK_THAT(outcome(Written("a.lvm", lvm("Multi", multi + "0,00\t1\t0,50\t2\n")).path),
+             Catch::Contains("E0340") && Catch::Contains("clocks of their own"));
+  CHECK_THAT(outcome(Written("a.lvm", "LabVIEW Measurement\t\nSeparator\tTab\n").path),
+             Catch::Contains("E0340"));
+}
+
 TEST_CASE("a workbook: dates by their style, shared texts, the first sheet or one that is named") {
   const Recording log = read_recording(of("log.xlsx"));
   CHECK(names(log) == "gx[deg/s] temp[degC] ");

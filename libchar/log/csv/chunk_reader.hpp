@@ -58,6 +58,8 @@ class ChunkReader {
   std::uint64_t size() const { return size_; }  ///< as stored; 0 when unknown
   std::string_view packing() const { return unpacker_->what(); }
   bool packed() const { return unpacker_ != nullptr; }
+  bool made() const { return packed() && unpacker_->made(); }
+  bool headed() const { return packed() && unpacker_->headed(); }
   std::string_view format() const { return packed() ? unpacker_->format() : "csv"; }
   void finish(Findings& findings) const {
     if (packed()) unpacker_->finish(findings);

@@ -227,10 +227,10 @@ class CsvSource final : public RowSource {
           .says("the compressed data end before their first byte of text")
           .hint("copy the file again");
     info_.format = chunks_.format();
-    if (info_.format != "csv") {
+    if (chunks_.made()) {
       options_.delimiter = ",";
       options_.decimal = "point";
-      options_.header = "yes";
+      if (chunks_.headed()) options_.header = "yes";
     }
     dialect_ = understand(head, chunks_.whole(), options_, info_);
     if (dialect_.group_column >= 0)

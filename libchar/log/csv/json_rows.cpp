@@ -17,7 +17,7 @@
 namespace libchar::csv {
 namespace {
 
-constexpr std::size_t kHead = std::size_t{1} << 18U, kBlock = std::size_t{1} << 16U, kDeepest = 32;
+constexpr std::size_t kHead = std::size_t{1} << 18U, kDeepest = 32;
 
 /// Walks one object, whose brackets are known to close.
 class ObjectCells {
@@ -142,7 +142,7 @@ class ObjectCells {
 class JsonRows final : public MadeText {
  public:
   JsonRows(std::function<std::size_t(char*, std::size_t)> stored, std::string file)
-      : stored_(std::move(stored)), file_(std::move(file)) {}
+      : from_{std::move(stored)}, file_(std::move(file)) {}
   std::string_view what() const override { return "objects of JSON, a row each"; }
   std::string_view format() const override { return "jsonl"; }
   void finish(Findings& findings) const override {
@@ -187,7 +187,7 @@ class JsonRows final : public MadeText {
       head_.push_back(std::move(*object));
     }
     text += '\n';
-    if (head_.size() == 1 && ended_) refuse_other_content(head_.front(), file_);  // a document
+    if (head_.size() == 1 && from_.ended) refuse_other_content(head_.front(), file_);  // a document
   }
 
   void row(const std::string& object, std::string& text) {
@@ -214,39 +214,28 @@ class JsonRows final : public MadeText {
 
   std::string place() const { return file_ + " (object " + std::to_string(objects_) + ")"; }
 
-  bool fill() {
-    if (ended_) return false;
-    raw_.erase(0, at_);
-    at_ = 0;
-    const std::size_t before = raw_.size();
-    raw_.resize(before + kBlock);
-    const std::size_t got = stored_(raw_.data() + before, kBlock);
-    raw_.resize(before + got);
-    ended_ = got == 0;
-    return !ended_;
-  }
-
   /// From its first bracket to the one that closes it; what stands between objects is '[', ',' and ']'.
   std::optional<std::string> next_object() {
     static constexpr std::string_view kBetween = " \t\r\n,[]";
     for (;;) {
-      at_ = std::min(raw_.find_first_not_of(kBetween, at_), raw_.size());
-      if (at_ < raw_.size()) break;
-      if (!fill()) return std::nullopt;
+      from_.at = std::min(from_.raw.find_first_not_of(kBetween, from_.at), from_.raw.size());
+      if (from_.at < from_.raw.size()) break;
+      if (!from_.more()) return std::nullopt;
     }
     ++objects_;
     std::size_t depth = 0, length = 0;
     bool quoted = false, escaped = false;
     for (;; ++length) {
-      if (at_ + length == raw_.size()) {
+      if (from_.at + length == from_.raw.size()) {
         if (length > kMaxLine) refuse_long();
-        if (!fill()) {
+        if (!from_.more()) {
           end_is_cut();
           return std::nullopt;
         }
       }
-      const char c = raw_[at_ + length];
-      if (length == 0 && c != '{') ObjectCells(std::string_view(raw_).substr(at_), place()).cells();
+      const char c = from_.raw[from_.at + length];
+      if (length == 0 && c != '{')
+        ObjectCells(std::string_view(from_.raw).substr(from_.at), place()).cells();
       if (escaped) {
         escaped = false;
       } else if (quoted) {
@@ -257,8 +246,8 @@ class JsonRows final : public MadeText {
       } else if (c == '{' || c == '[') {
         ++depth;
       } else if ((c == '}' || c == ']') && --depth == 0) {
-        std::string object = raw_.substr(at_, length + 1);
-        at_ += length + 1;
+        std::string object = from_.raw.substr(from_.at, length + 1);
+        from_.at += length + 1;
         return object;
       }
     }
@@ -267,10 +256,8 @@ class JsonRows final : public MadeText {
     throw input_error("E0337", place()).says("an object of more than {} bytes", kMaxLine);
   }
 
-  std::function<std::size_t(char*, std::size_t)> stored_;
-  std::string file_, raw_;
-  std::size_t at_ = 0;
-  bool ended_ = false;
+  Feed from_;
+  std::string file_;
   std::uint64_t objects_ = 0, late_ = 0;
   std::string first_late_;
   std::deque<std::string> head_;

@@ -3,12 +3,34 @@
 // and commas between the cells, which then goes the way of every CSV file.
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 
 #include "libchar/log/csv/unpacker.hpp"
 
 namespace libchar::csv {
+
+/// Bytes that come piece by piece, of which those from `at` on are not used up.
+struct Feed {
+  std::function<std::size_t(char*, std::size_t)> stored;
+  std::string raw = {};
+  std::size_t at = 0;
+  bool ended = false;
+  /// Forgets what is used up and reads on; false at the end.
+  bool more() {
+    constexpr std::size_t kPiece = std::size_t{1} << 16U;
+    if (ended) return false;
+    raw.erase(0, at);
+    at = 0;
+    const std::size_t before = raw.size();
+    raw.resize(before + kPiece);
+    const std::size_t got = stored(raw.data() + before, kPiece);
+    raw.resize(before + got);
+    ended = got == 0;
+    return !ended;
+  }
+};
 
 class MadeText : public Unpacker {
  public:
@@ -23,6 +45,7 @@ class MadeText : public Unpacker {
     return taken;
   }
   bool cut() const final { return cut_; }
+  bool made() const final { return true; }
 
  protected:
   /// Adds the next rows; false behind the last one.

@@ -9,6 +9,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/log/csv/json_rows.hpp"
+#include "libchar/log/csv/lvm_rows.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_ZLIB
@@ -242,6 +243,7 @@ Packing packing_of(std::string_view first_bytes) {
     if (first_bytes.starts_with("\xFF\xFE")) return Packing::utf16le;
     if (first_bytes.starts_with("\xFE\xFF")) return Packing::utf16be;
   }
+  if (is_lvm(first_bytes)) return Packing::lvm;
   return is_json_rows(first_bytes) ? Packing::json : Packing::none;
 }
 
@@ -258,6 +260,8 @@ std::unique_ptr<Unpacker> make_unpacker(
                                          packing == Packing::utf16be);
     case Packing::json:
       return open_json_rows(std::move(stored), file);
+    case Packing::lvm:
+      return open_lvm_rows(std::move(stored), file);
     case Packing::gzip:
 #if LIBCHAR_HAVE_ZLIB
       return std::make_unique<Gunzip>(StoredBytes(std::move(stored), file));

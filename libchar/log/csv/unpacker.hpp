@@ -14,7 +14,7 @@
 
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json };
+enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm };
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);
@@ -28,7 +28,10 @@ class Unpacker {
   /// The stored data ended before their end mark.
   virtual bool cut() const = 0;
   virtual std::string_view what() const { return "compressed"; }
-  /// In the table of formats; of others than csv the text is made by this program, with commas and points.
+  /// Is the text made by this program, with commas, points and, if so, a header?
+  virtual bool made() const { return false; }
+  virtual bool headed() const { return made(); }
+  /// In the table of formats.
   virtual std::string_view format() const { return "csv"; }
   virtual void finish(Findings& findings) const { static_cast<void>(findings); }
 };

@@ -109,6 +109,7 @@ class SheetText final : public csv::MadeText {
         book_(book) {}
   std::string_view what() const override { return "a sheet of a workbook"; }
   std::string_view format() const override { return "xlsx"; }
+  bool headed() const override { return false; }
 
  protected:
   bool more(std::string& text) override {

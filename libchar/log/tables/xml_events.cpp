@@ -9,76 +9,64 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16U, kMostTag = std::size_t{1} << 16U,
-                      kMostText = std::size_t{1} << 20U;
+constexpr std::size_t kMostTag = std::size_t{1} << 16U, kMostText = std::size_t{1} << 20U;
 constexpr std::string_view kBlanks = " \t\r\n";
 
 }  // namespace
 
 XmlEvents::XmlEvents(std::function<std::size_t(char*, std::size_t)> bytes, std::string where)
-    : bytes_(std::move(bytes)), where_(std::move(where)) {}
+    : from_{std::move(bytes)}, where_(std::move(where)) {}
 
 void XmlEvents::refuse(std::string_view what) const {
   throw input_error("E0339", where_).says("broken XML: {}", what).hint("save the workbook again");
 }
 
-bool XmlEvents::fill() {
-  if (ended_) return false;
-  raw_.erase(0, std::exchange(at_, 0));
-  const std::size_t before = raw_.size();
-  raw_.resize(before + kBlock);
-  const std::size_t got = bytes_(raw_.data() + before, kBlock);
-  raw_.resize(before + got);
-  ended_ = got == 0;
-  return !ended_;
-}
-
-/// What stands before `mark`, which is passed.
+/// What is before `mark`, which is passed.
 std::string XmlEvents::until(std::string_view mark, std::size_t most) {
   for (std::size_t searched = 0;;) {
-    const std::size_t found = raw_.find(mark, at_ + searched);
+    const std::size_t found = from_.raw.find(mark, from_.at + searched);
     if (found != std::string::npos) {
-      std::string before = raw_.substr(at_, found - at_);
-      at_ = found + mark.size();
+      std::string before = from_.raw.substr(from_.at, found - from_.at);
+      from_.at = found + mark.size();
       return before;
     }
-    const std::size_t have = raw_.size() - at_;
+    const std::size_t have = from_.raw.size() - from_.at;
     if (have > most) refuse("a tag or a text without an end");
     searched = have < mark.size() ? 0 : have - mark.size() + 1;
-    if (!fill()) refuse("it ends inside a tag");
+    if (!from_.more()) refuse("it ends inside a tag");
   }
 }
 
 XmlEvents::Kind XmlEvents::next() {
   if (std::exchange(closes_, false)) return Kind::close;
   for (;;) {
-    if (at_ == raw_.size() && !fill()) return Kind::end;
-    if (raw_[at_] != '<') {
-      std::size_t end = raw_.find('<', at_);
-      while (end == std::string::npos && raw_.size() - at_ <= kMostText && fill())
-        end = raw_.find('<', at_);
-      if (end == std::string::npos) end = raw_.size();
-      if (end - at_ > kMostText + kBlock) refuse("a text of more than a MiB");
+    if (from_.at == from_.raw.size() && !from_.more()) return Kind::end;
+    if (from_.raw[from_.at] != '<') {
+      std::size_t end = from_.raw.find('<', from_.at);
+      while (end == std::string::npos && from_.raw.size() - from_.at <= kMostText && from_.more())
+        end = from_.raw.find('<', from_.at);
+      if (end == std::string::npos) end = from_.raw.size();
+      if (end - from_.at > kMostText + kMostTag) refuse("a text of more than a MiB");
       text_.clear();
-      resolve(std::string_view(raw_).substr(at_, end - at_), text_);
-      at_ = end;
+      resolve(std::string_view(from_.raw).substr(from_.at, end - from_.at), text_);
+      from_.at = end;
       return Kind::text;
     }
-    while (raw_.size() - at_ < 9 && fill()) {
+    while (from_.raw.size() - from_.at < 9 && from_.more()) {
     }
-    const std::string_view here = std::string_view(raw_).substr(at_);
+    const std::string_view here = std::string_view(from_.raw).substr(from_.at);
     if (here.starts_with("<?")) {
       until("?>", kMostTag);
     } else if (here.starts_with("<!--")) {
       until("-->", kMostText);
     } else if (here.starts_with("<![CDATA[")) {
-      at_ += 9;
+      from_.at += 9;
       text_ = until("]]>", kMostText);
       return Kind::text;
     } else if (here.starts_with("<!")) {
       refuse("a document type");
     } else {
-      ++at_;
+      ++from_.at;
       const std::string tag = until(">", kMostTag);
       read_tag(tag);
       return tag.starts_with('/') ? Kind::close : Kind::open;

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "libchar/log/csv/made_text.hpp"
+
 namespace libchar {
 
 class XmlEvents {
@@ -28,16 +30,14 @@ class XmlEvents {
 
  private:
   [[noreturn]] void refuse(std::string_view what) const;
-  bool fill();
   std::string until(std::string_view mark, std::size_t most);
   void read_tag(std::string_view tag);
   void resolve(std::string_view raw, std::string& to) const;
 
-  std::function<std::size_t(char*, std::size_t)> bytes_;
-  std::string where_, raw_, name_, text_;
+  csv::Feed from_;
+  std::string where_, name_, text_;
   std::map<std::string, std::string, std::less<>> attributes_;
-  std::size_t at_ = 0;
-  bool ended_ = false, closes_ = false;
+  bool closes_ = false;
 };
 
 }  // namespace libchar
