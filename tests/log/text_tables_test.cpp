@@ -137,6 +137,40 @@ TEST_CASE("LabVIEW: time in one column, in equal ones, or in none; segments go o
              Catch::Contains("E0340"));
 }
 
+TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
+  ReadOptions options;
+  options.rate_hz = 40;
+  const Recording vn = read_recording(
+      Written("a.txt",
+              "$VNGYR,+00.1,-0.2,+3.5*5D\r\n$VNERR,03*72\r\n$VNGYR,+00.2,-0.25,+3.25*5D\r\n")
+          .path,
+      options);
+  CHECK(names(vn) == "gyro_x[rad/s] gyro_y[rad/s] gyro_z[rad/s] ");
+  CHECK(vn.samples[2] == std::vector<double>{3.5, 3.25});
+  CHECK(vn.info.warnings.find("comment_line")->count == 1);
+  std::string text;
+  for (int k = 0; k < 8; ++k)
+    text += "#RAWIMUSXA,COM1,0,81.5,FINESTEERING,1724,219418.0,004c,22ff,5;00,11,1724,219418.0" +
+            std::to_string(k) + "0,111607,43088060," + std::to_string(k) +
+            ",-3033352,186983,-132863,823*5aa97065\n";
+  const Recording nov = read_recording(Written("a.asc", text).path);
+  CHECK(nov.info.time.rate_hz == Approx(100));
+  CHECK(names(nov) == "acc_z acc_y acc_x gyro_z gyro_y gyro_x ");
+  CHECK(nov.samples[1][7] == -7);
+  CHECK(nov.samples[4][0] == 132863);
+}
+
+TEST_CASE("Shimmer: a line between names and units says that values are calibrated") {
+  const Recording log =
+      read_recording(Written("a.csv",
+                             "Unit\tUnit\tUnit\nTimestamp\tAccel X\tGyro "
+                             "X\nCAL\tCAL\tCAL\nms\tm/(s^2)\tdeg/s\n0.0\t0.5\t0.1\n"
+                             "10.0\t0.5\t0.25\n20.0\t0.5\t0.2\n30.0\t0.5\t0.3\n")
+                         .path);
+  CHECK(names(log) == "Accel X[m/(s^2)] Gyro X[deg/s] ");
+  CHECK(log.samples[1][1] == 0.25);
+}
+
 TEST_CASE("a workbook: dates by their style, shared texts, the first sheet or one that is named") {
   const Recording log = read_recording(of("log.xlsx"));
   CHECK(names(log) == "gx[deg/s] temp[degC] ");

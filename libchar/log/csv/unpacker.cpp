@@ -10,6 +10,7 @@
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/log/csv/json_rows.hpp"
 #include "libchar/log/csv/lvm_rows.hpp"
+#include "libchar/log/csv/sentence_rows.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_ZLIB
@@ -244,6 +245,7 @@ Packing packing_of(std::string_view first_bytes) {
     if (first_bytes.starts_with("\xFE\xFF")) return Packing::utf16be;
   }
   if (is_lvm(first_bytes)) return Packing::lvm;
+  if (is_sentences(first_bytes)) return Packing::sentences;
   return is_json_rows(first_bytes) ? Packing::json : Packing::none;
 }
 
@@ -260,6 +262,8 @@ std::unique_ptr<Unpacker> make_unpacker(
                                          packing == Packing::utf16be);
     case Packing::json:
       return open_json_rows(std::move(stored), file);
+    case Packing::sentences:
+      return open_sentence_rows(std::move(stored), file);
     case Packing::lvm:
       return open_lvm_rows(std::move(stored), file);
     case Packing::gzip:

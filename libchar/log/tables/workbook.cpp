@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
 #include "libchar/log/csv/made_text.hpp"
@@ -160,10 +161,9 @@ class SheetText final : public csv::MadeText {
       cell = value == "1" ? "TRUE" : "FALSE";
     } else if (type.empty() || type == "n" || type == "d") {
       measured_ = true;
-      double serial = 0;
-      if (style != Style::number &&
-          std::from_chars(value.data(), value.data() + value.size(), serial).ec == std::errc())
-        cell = date_text(serial, style, book_.first_day);
+      const auto serial = parse_double(value);
+      if (style != Style::number && serial)
+        cell = date_text(*serial, style, book_.first_day);
       else
         cell = value;
     } else {
