@@ -14,10 +14,12 @@ namespace sensorchar {
 namespace {
 
 void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
-  verb.add_text("--topic",
-                options.topic,
-                "of a log that holds several streams (bags, flight logs, arrays), the one to read "
-                "(default: the only one)")
+  verb.add_text(
+          "--topic",
+          options.topic,
+          "of a log that holds several streams (bags, flight logs, arrays), the one to read, or "
+          "several as one, by a pattern or the name of instances "
+          "(default: the only one)")
       .value_name("NAME")
       .group("Reading");
   verb.add_choice("--time-source",

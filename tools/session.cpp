@@ -220,6 +220,13 @@ void say_unlocked(Session& session) {
                     libchar::printable(folder)));
 }
 
+std::string error_line(const Session& session, const Error& error) {
+  const libchar::Problem problem =
+      with_flags(with_curve_hint(session, error.problem()), session.flags);
+  const std::string line = libchar::one_line(problem, colours(STDERR_FILENO));
+  return ::isatty(STDERR_FILENO) == 1 ? line + marked_line(error.problem()) : line;
+}
+
 int said_exit_code(Session& session, const std::function<void()>& work) {
   const auto fail = [&](std::string_view line, int code) {
     work_is_done();
@@ -242,11 +249,7 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
   } catch (const Error& error) {
     // An error after a signal is its consequence: the input of a pipe ended early.
     if (stop_signal() != 0) return stopped(stop_signal());
-    const libchar::Problem problem =
-        with_flags(with_curve_hint(session, error.problem()), session.flags);
-    const std::string line = libchar::one_line(problem, colours(STDERR_FILENO));
-    return fail(::isatty(STDERR_FILENO) == 1 ? line + marked_line(error.problem()) : line,
-                exit_code(error.problem().kind));
+    return fail(error_line(session, error), exit_code(error.problem().kind));
   } catch (const libchar::Cancelled& cancelled) {
     return stopped(cancelled.signal);
   } catch (const StdoutClosed&) {
@@ -276,6 +279,11 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
 }
 
 }  // namespace
+
+void say_error(Session& session, const Error& error) {
+  session.terminal.clear();
+  say(error_line(session, error));
+}
 
 void set_memory_hint(const Session& session) {
   if (session.flags.count("--channel") + session.flags.count("--from") == 2)

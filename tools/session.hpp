@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/core/document/json.hpp"
+#include "libchar/core/error.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/log/recording.hpp"
 #include "terminal.hpp"
@@ -24,6 +25,8 @@ struct Session {
   std::vector<std::string> warned_files;  ///< files that had warnings, in order
 };
 
+/// On stderr, as the end of a run says it: for runs that go on.
+void say_error(Session& session, const libchar::Error& error);
 /// Says the warnings of one input on stderr and remembers them for --strict.
 void report_warnings(Session& session, const libchar::LogInfo& info);
 /// What is known of a channel, at most five lines, the worst first.

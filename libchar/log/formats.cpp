@@ -6,7 +6,7 @@
 
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
-#include "libchar/log/topics/topic_rows.hpp"
+#include "libchar/log/topics/joined_topics.hpp"
 
 // The log formats, the most specific first. A line both declares the row that NAME's file exports and lists it:
 // Format NAME_format().
@@ -22,7 +22,11 @@
   FORMAT(hdf5)                      \
   FORMAT(matlab)                    \
   FORMAT(imu)                       \
+  FORMAT(wav)                       \
+  FORMAT(xlsx)                      \
+  FORMAT(tables)                    \
   FORMAT(raw)                       \
+  FORMAT(jsonl)                     \
   FORMAT(csv)
 
 // A build may bring formats of its own, which are asked first: -D'LIBCHAR_MORE_LOG_FORMATS(FORMAT)=FORMAT(mine)'.
@@ -70,7 +74,12 @@ std::unique_ptr<RowSource> open_rows(const Format& format,
                                      const std::string& path,
                                      const ReadOptions& options) {
   if (format.topics == nullptr) return format.open(path, options);
-  return open_topic_rows(format.topics(path, options), path, format.about.name, options);
+  auto reader = format.topics(path, options);
+  const auto several = choose_topics(reader->topics(), options, path);
+  if (!several.empty())
+    return open_joined_topics(
+        several, reader->topics(), format.topics, path, format.about.name, options);
+  return open_topic_rows(std::move(reader), path, format.about.name, options);
 }
 
 const Format* find_format(std::string_view name) {

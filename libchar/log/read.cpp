@@ -47,8 +47,8 @@ std::string front_of(const std::string& path) {
     throw input_error("E0101", path)
         .says("is a folder, a file was expected")
         .hint(
-            "of folders those of rosbag2 are read, which have a metadata.yaml (ros2 bag reindex "
-            "writes one)");
+            "of folders those of CSV files are read, and those of rosbag2, which have a "
+            "metadata.yaml (ros2 bag reindex writes one)");
   }
   std::string bytes(4096, '\0');
   // Only of a regular file can the front be read twice.
@@ -86,8 +86,10 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
       if (format.about.from_pipes) return format;
   }
   if (is_rosbag2(path)) return *find_format("rosbag2");
+  if (detail::is_folder_of_tables(path)) return *find_format("tables");
   const std::string front = front_of(path);
-  if (csv::packing_of(front) != csv::Packing::none) return packed_format(path);
+  const csv::Packing packing = csv::packing_of(front);
+  if (packing != csv::Packing::none && packing < csv::Packing::json) return packed_format(path);
   for (const Format& format : formats())
     if (format.certain != nullptr && format.certain(front)) return format;
   if (const Format* format = format_by_suffix(path)) return *format;
@@ -493,7 +495,7 @@ LogInfo read_log(const std::string& log,
   warn_of_unused(info.channels, options, warnings);
   take_grid(known, info);
   for (std::size_t c = 0; c < info.channels.size(); ++c)
-    info.channels[c].every = grid.clocks().every(c);
+    info.channels[c].every = std::max(info.channels[c].every, grid.clocks().every(c));
   refuse_without_samples(info, options);
   judge_values(watch, info, options, warnings);
   warn_of_units(options, warnings);

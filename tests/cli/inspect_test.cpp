@@ -148,3 +148,14 @@ TEST_CASE("inspect: a pipe has as many bytes as the file it comes from, comments
   CHECK(bytes(test::run({"inspect", "-", "--json"}, piped)) == std::filesystem::file_size(path));
   CHECK(bytes(test::run({"inspect", path, "--json"})) == std::filesystem::file_size(path));
 }
+
+TEST_CASE("a log that cannot be read does not hide those behind it") {
+  const std::string good = test::fixture("npy/half.npy").string();
+  const auto text = test::run({"inspect", good, "absent.csv", good, "missing.csv"});
+  CHECK(text.code == 3);
+  CHECK(text.out.find("half.npy") != text.out.rfind("half.npy: 1"));
+  CHECK_THAT(text.err, Contains("absent.csv: error") && Contains("missing.csv: error"));
+  const auto json = test::run({"inspect", "--json", "absent.csv", good});
+  CHECK(json.code == 3);
+  CHECK(libchar::parse_json(json.out, "stdout")["recordings"].size() == 1);
+}

@@ -2,7 +2,8 @@
 `detail`, and the rooms of one kind each behind the table of a floor. libchar/CMakeLists.txt installs the same."""
 import re
 
-PRIVATE = re.compile(r"^libchar/(?:.*/detail|log/(?:arrays|binary|csv|flight|ros|time|topics|write)|fusion/algorithms"
+PRIVATE = re.compile(r"^libchar/(?:.*/detail|log/(?:arrays|binary|csv|flight|ros|tables|time|topics|write)"
+                     r"|fusion/algorithms"
                      r"|export/targets|fleet/engines)/")
 
 

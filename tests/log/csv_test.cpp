@@ -517,7 +517,6 @@ TEST_CASE("what is not read is recognised, with the way to a table") {
       {"ARROW1\0\0\xFF"s, "read_feather"},
       {"TDSm\x0E\0\0\0"s, "nptdms"},
       {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"s, "save it as CSV"},
-      {"RIFF\x24\x08\0\0WAVEfmt "s, "wavfile"},
       {"\xB5\x62\x01\x07\x5C\0"s, "pyubx2"},
       {"H Product:Blackbox flight data recorder\n"s, "blackbox_decode"},
       {"$GPGGA,123519,4807.038,N\n"s, "gpsbabel"},

@@ -436,7 +436,7 @@ std::vector<Export> bench_exports() {
        1000,
        0,
        {1.25, 0.5},
-       "in front of the table left out"});
+       "segments of a LabVIEW measurement file"});
   out.push_back(
       {"Excel, German",
        "Datum;Uhrzeit;Beschleunigung [m/s²];Drehrate [°/s]\r\n" +

@@ -33,6 +33,15 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("hdf5: members of a record may be arrays of any dimensions") {
+  NEEDS_LIBRARY(HDF5);
+  const Recording log = array_log("records.h5", {});
+  REQUIRE(log.info.channels.size() == 7);
+  CHECK(log.info.time.rate_hz == Approx(100));
+  CHECK(log.samples[2][19] == 59.0 / 4);
+  CHECK(log.samples[6][19] == 79.0 / 8);
+}
+
 TEST_CASE("hdf5: groups are topics, records bring their own stamps, an attribute is a rate") {
   NEEDS_LIBRARY(HDF5);
   const LogInfo listing = log_listing(test::fixture("arrays/groups.h5").string(), {});

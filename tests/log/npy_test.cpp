@@ -303,3 +303,22 @@ TEST_CASE("stamps that overflow, are too large or are missing") {
   CHECK_THROWS_WITH(write({0, 1, 1e10, 2}),
                     Catch::Contains("does not fit 64-bit nanoseconds") && Catch::Contains("row 1"));
 }
+
+TEST_CASE("dimensions behind the first are columns, in either order") {
+  const auto read = [](bool fortran, const std::vector<double>& values) {
+    const test::TemporaryFolder folder;
+    std::string header = std::string("{'descr': '<f8', 'fortran_order': ") +
+                         (fortran ? "True" : "False") + ", 'shape': (2, 2, 3), }";
+    header.resize(117, ' ');
+    header += '\n';
+    std::string bytes = std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + header;
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+    const std::string path = (folder / "a.npy").string();
+    std::ofstream(path, std::ios::binary) << bytes;
+    return read_recording(path).samples;
+  };
+  // Element (i, j, k) is 100 i + 10 j + k.
+  const auto rows = read(false, {0, 1, 2, 10, 11, 12, 100, 101, 102, 110, 111, 112});
+  CHECK(rows[4] == std::vector<double>{11, 111});
+  CHECK(rows == read(true, {0, 100, 10, 110, 1, 101, 11, 111, 2, 102, 12, 112}));
+}

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "help/next.hpp"
@@ -76,10 +77,27 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
                      libchar::shell_word(default_folder(info.file)));
 }
 
+void print_json(Session& session, const std::vector<libchar::Inspection>& inspections) {
+  std::vector<const libchar::LogInfo*> inputs;
+  inputs.reserve(inspections.size());
+  for (const libchar::Inspection& inspection : inspections) inputs.push_back(&inspection.info);
+  libchar::Json document = document_head(session, "inspect", inputs);
+  document["recordings"] = libchar::inspection_json(inspections)["recordings"];
+  print(libchar::dump_json(document));
+}
+
 void run_inspect(Session& session, const InspectVerb& verb) {
   std::vector<libchar::Inspection> inspections;
+  std::optional<libchar::Error> refused;  // a log that cannot be read does not hide those behind it
   for (const std::string& log : verb.logs) {
-    inspections.push_back(libchar::inspect(log, verb.reading, session.terminal));
+    try {
+      inspections.push_back(libchar::inspect(log, verb.reading, session.terminal));
+    } catch (const libchar::Error& error) {
+      if (verb.logs.size() == 1) throw;
+      if (refused) say_error(session, *refused);
+      refused = error;
+      continue;
+    }
     session.terminal.clear();
     const libchar::LogInfo& info = inspections.back().info;
     if (verb.json) {  // else they stand among the results
@@ -91,13 +109,8 @@ void run_inspect(Session& session, const InspectVerb& verb) {
                libchar::inspection_text(inspections.back(), table_width()));
     print(next_command(verb, inspections.back()));
   }
-  if (!verb.json) return;
-  std::vector<const libchar::LogInfo*> inputs;
-  inputs.reserve(inspections.size());
-  for (const libchar::Inspection& inspection : inspections) inputs.push_back(&inspection.info);
-  libchar::Json document = document_head(session, "inspect", inputs);
-  document["recordings"] = libchar::inspection_json(inspections)["recordings"];
-  print(libchar::dump_json(document));
+  if (verb.json && !inspections.empty()) print_json(session, inspections);
+  if (refused) throw libchar::Error(*refused);
 }
 
 std::function<void()> inspect_options(VerbOptions& options, Session& session) {

@@ -1,5 +1,6 @@
 #include "libchar/core/file/log_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -29,6 +30,18 @@ std::string part_in(const fs::path& folder, const std::string& said, const std::
   return part.string();
 }
 
+std::vector<std::string> tables_in(const fs::path& folder) {
+  std::vector<std::string> files;
+  std::error_code none;
+  for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none)) {
+    const std::string suffix = at->path().extension().string();
+    if ((suffix == ".csv" || suffix == ".tsv") && at->is_regular_file(none))
+      files.push_back(at->path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 }  // namespace
 
 std::string named_log_file(const std::string& path) {
@@ -47,7 +60,13 @@ bool is_rosbag2(const std::string& file) {
   return front.find(kInformation) != std::string::npos;
 }
 
+bool detail::is_folder_of_tables(const std::string& path) {
+  std::error_code none;
+  return fs::is_directory(path, none) && named_log_file(path) == path && !tables_in(path).empty();
+}
+
 std::vector<std::string> files_of_log(const std::string& file) {
+  if (detail::is_folder_of_tables(file)) return tables_in(file);
   std::vector<std::string> files = {file};
   if (!is_rosbag2(file)) return files;
   const Document document = parse_yaml_document(read_document_text(file), file);

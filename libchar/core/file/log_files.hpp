@@ -13,7 +13,12 @@ std::string named_log_file(const std::string& path);
 /// Is this file the metadata.yaml of rosbag2?
 bool is_rosbag2(const std::string& file);
 
-/// The file itself and, of a metadata.yaml of rosbag2, the parts behind it in their order, all of its folder. Throws Error(input) for a
+namespace detail {
+/// Is this a folder with files of CSV (.csv, .tsv), as phones write one for each sensor?
+bool is_folder_of_tables(const std::string& path);
+}  // namespace detail
+
+/// Of a folder of tables these in the order of their names; else the file itself and, of a metadata.yaml of rosbag2, the parts behind it in their order, all of its folder. Throws Error(input) for a
 /// part that is not there and a list that cannot be read.
 std::vector<std::string> files_of_log(const std::string& file);
 

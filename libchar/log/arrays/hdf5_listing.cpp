@@ -138,7 +138,7 @@ LogArray decode_array(Decoder& from) {
     ElementField field;
     field.name = from.text();
     field.unit = from.text();
-    field.number.type = static_cast<NumberType>(from.number() % 11);
+    field.number.type = static_cast<NumberType>(from.number() % kNumberTypes);
     field.byte = from.number();
     field.count = from.count();
     field.array = from.number() != 0;

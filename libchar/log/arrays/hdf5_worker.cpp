@@ -81,6 +81,7 @@ hid_t native_of(NumberType type) {
       return H5T_NATIVE_INT16;
     case NumberType::u16:
       return H5T_NATIVE_UINT16;
+    case NumberType::i24:
     case NumberType::i32:
       return H5T_NATIVE_INT32;
     case NumberType::u32:
@@ -155,6 +156,17 @@ bool read_member(hid_t type, ElementField& field, std::string& why_not) {
   return known.has_value();
 }
 
+// Of the shape that the member has in the file: the library converts between equal shapes only.
+hid_t native_member(hid_t record, const ElementField& field) {
+  const hid_t number = native_of(field.number.type);
+  const int index = field.array ? H5Tget_member_index(record, field.name.c_str()) : -1;
+  if (index < 0) return H5Tcopy(number);
+  const Handle member = type_handle(H5Tget_member_type(record, static_cast<unsigned>(index)));
+  hsize_t extents[H5S_MAX_RANK];
+  const int rank = H5Tget_array_dims2(member, extents);
+  return H5Tarray_create2(number, static_cast<unsigned>(std::max(rank, 1)), extents);
+}
+
 // The fields of a record that are numbers, packed; the library reads just these.
 hid_t record_type(hid_t type, LogArray& array) {
   if (is_complex(type)) {
@@ -183,10 +195,7 @@ hid_t record_type(hid_t type, LogArray& array) {
   }
   const hid_t memory = H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(array.element_bytes));
   for (const ElementField& field : array.fields) {
-    const hsize_t count = field.count;
-    const Handle side =
-        type_handle(field.array ? H5Tarray_create2(native_of(field.number.type), 1, &count)
-                                : H5Tcopy(native_of(field.number.type)));
+    const Handle side = type_handle(native_member(type, field));
     H5Tinsert(memory, field.name.c_str(), static_cast<std::size_t>(field.byte), side);
   }
   return memory;

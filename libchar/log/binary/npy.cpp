@@ -26,20 +26,18 @@ std::uint64_t columns_of(const NpyHeader& header, const std::string& file) {
   const std::size_t dimensions = header.shape.size();
   if (dimensions == 0)
     throw input_error("E0408", where).says("is a single number (0-dimensional), not a log");
-  if (dimensions > 2)
-    throw input_error("E0408", where)
-        .says("has {} dimensions; 1 (samples) or 2 (rows × channels) are read", dimensions)
-        .hint("reshape it: array.reshape(len(array), -1)");
   if (header.structured && dimensions != 1)
     throw input_error("E0408", where).says("a structured array must have one dimension");
   if (header.structured) return 1;
   if (dimensions == 1) return header.fields[0].count;
-  if (header.shape[1] == 0) throw input_error("E0408", where).says("has no columns");
-  if (header.shape[1] > kMaxColumns)
+  std::uint64_t columns = 1;  // dimensions behind the first are columns
+  for (std::size_t d = 1; d < dimensions; ++d) columns = product(columns, header.shape[d], file);
+  if (columns == 0) throw input_error("E0408", where).says("has no columns");
+  if (columns > kMaxColumns)
     throw input_error("E0408", where)
-        .says("has {} columns, more than the limit of {}", header.shape[1], kMaxColumns)
+        .says("has {} columns, more than the limit of {}", columns, kMaxColumns)
         .hint("are rows and columns exchanged? save array.T");
-  return header.shape[1];
+  return columns;
 }
 
 void check_size(const NpyHeader& header,
@@ -80,6 +78,18 @@ void add_fields(const NpyHeader& header, BinaryLayout& layout) {
   layout.named = true;
 }
 
+/// Of column c, counted with the last dimension the fastest, the place among those of Fortran order.
+std::uint64_t fortran_place(const NpyHeader& header, std::uint64_t c) {
+  std::uint64_t place = 0;
+  for (std::size_t d = header.shape.size() - 1, at = 1; at <= d; ++at) {
+    std::uint64_t behind = 1, before = 1;
+    for (std::size_t k = at + 1; k <= d; ++k) behind *= header.shape[k];
+    for (std::size_t k = 1; k < at; ++k) before *= header.shape[k];
+    place += c / behind % header.shape[at] * before;
+  }
+  return place;
+}
+
 void add_plain_columns(const NpyHeader& header, std::uint64_t columns, BinaryLayout& layout) {
   const std::uint64_t item = header.item_bytes;
   layout.column_major = header.fortran_order && columns > 1;
@@ -87,7 +97,8 @@ void add_plain_columns(const NpyHeader& header, std::uint64_t columns, BinaryLay
     BinaryColumn column;
     column.name = fmt::format("c{}", c);
     column.number = header.fields[0].number;
-    column.first_byte = header.data_byte + item * (layout.column_major ? c * layout.rows : c);
+    column.first_byte = header.data_byte +
+                        item * (layout.column_major ? fortran_place(header, c) * layout.rows : c);
     column.stride = layout.column_major ? item : item * columns;
     layout.columns.push_back(std::move(column));
   }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace libchar {
 namespace {
@@ -14,17 +15,18 @@ struct TypeName {
   std::string_view name;
   std::size_t size;
 };
-constexpr std::array<TypeName, 11> kTypes = {{{"f16", 2},
-                                              {"f32", 4},
-                                              {"f64", 8},
-                                              {"i8", 1},
-                                              {"i16", 2},
-                                              {"i32", 4},
-                                              {"i64", 8},
-                                              {"u8", 1},
-                                              {"u16", 2},
-                                              {"u32", 4},
-                                              {"u64", 8}}};
+constexpr std::array<TypeName, kNumberTypes> kTypes = {{{"f16", 2},
+                                                        {"f32", 4},
+                                                        {"f64", 8},
+                                                        {"i8", 1},
+                                                        {"i16", 2},
+                                                        {"i24", 3},
+                                                        {"i32", 4},
+                                                        {"i64", 8},
+                                                        {"u8", 1},
+                                                        {"u16", 2},
+                                                        {"u32", 4},
+                                                        {"u64", 8}}};
 
 template <std::size_t size>
 using Bits = std::conditional_t<
@@ -65,6 +67,15 @@ struct Half {
 double to_double(Half half) {
   return half_value(half.bits);
 }
+
+struct Triple {
+  std::array<std::uint8_t, 3> bytes;  // the least significant first
+};
+
+double to_double(Triple t) {
+  const std::uint32_t bits = t.bytes[0] | t.bytes[1] << 8U | t.bytes[2] << 16U;
+  return static_cast<double>(static_cast<std::int32_t>(bits << 8U) / 256);
+}
 double to_double(float value) {
   return static_cast<double>(value);
 }
@@ -75,9 +86,16 @@ double to_double(T value) {
 
 template <typename T, bool swap>
 T load(const std::byte* from) {
-  Bits<sizeof(T)> bits;
-  std::memcpy(&bits, from, sizeof bits);
-  return std::bit_cast<T>(swap ? swapped(bits) : bits);
+  if constexpr (std::is_same_v<T, Triple>) {
+    Triple t;
+    std::memcpy(t.bytes.data(), from, t.bytes.size());
+    if (swap) std::swap(t.bytes[0], t.bytes[2]);
+    return t;
+  } else {
+    Bits<sizeof(T)> bits;
+    std::memcpy(&bits, from, sizeof bits);
+    return std::bit_cast<T>(swap ? swapped(bits) : bits);
+  }
 }
 
 template <typename T, bool swap>
@@ -131,6 +149,8 @@ auto with_type(NumberType type, F f) {
       return f(std::int8_t{});
     case NumberType::i16:
       return f(std::int16_t{});
+    case NumberType::i24:
+      return f(Triple{});
     case NumberType::i32:
       return f(std::int32_t{});
     case NumberType::i64:

@@ -9,7 +9,8 @@
 
 namespace libchar {
 
-enum class NumberType { f16, f32, f64, i8, i16, i32, i64, u8, u16, u32, u64 };
+enum class NumberType { f16, f32, f64, i8, i16, i24, i32, i64, u8, u16, u32, u64 };
+inline constexpr std::size_t kNumberTypes = 12;
 
 struct NumberFormat {
   NumberType type = NumberType::f64;

@@ -77,6 +77,12 @@ ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
         std::max<std::size_t>(4096, detail::in_memory(size_)));  // small files, small buffers
 }
 
+ChunkReader::ChunkReader(std::unique_ptr<Unpacker> text, std::string name, std::size_t block_bytes)
+    : path_(std::move(name)),
+      block_(std::max<std::size_t>(1, block_bytes)),
+      file_ended_(true),
+      unpacker_(std::move(text)) {}
+
 ChunkReader::~ChunkReader() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
@@ -112,6 +118,7 @@ std::size_t ChunkReader::read_stored(char* to, std::size_t n) {
 }
 
 void ChunkReader::look_for_packing() {
+  if (packed()) return;
   front_.resize(kPackingBytes);
   front_.resize(read_file(front_.data(), kPackingBytes));
   const Packing packing = packing_of(front_);

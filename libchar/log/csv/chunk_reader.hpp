@@ -33,6 +33,8 @@ struct RawChunk {
 class ChunkReader {
  public:
   ChunkReader(std::string path, std::size_t block_bytes, bool hash);
+  /// Of text that comes from elsewhere, whose file somebody else reads and hashes.
+  ChunkReader(std::unique_ptr<Unpacker> text, std::string name, std::size_t block_bytes);
   ChunkReader(const ChunkReader&) = delete;
   ChunkReader& operator=(const ChunkReader&) = delete;
   ~ChunkReader();
@@ -56,6 +58,12 @@ class ChunkReader {
   std::uint64_t size() const { return size_; }  ///< as stored; 0 when unknown
   std::string_view packing() const { return unpacker_->what(); }
   bool packed() const { return unpacker_ != nullptr; }
+  bool made() const { return packed() && unpacker_->made(); }
+  bool headed() const { return packed() && unpacker_->headed(); }
+  std::string_view format() const { return packed() ? unpacker_->format() : "csv"; }
+  void finish(Findings& findings) const {
+    if (packed()) unpacker_->finish(findings);
+  }
   bool packed_cut() const { return packed() && unpacker_->cut(); }
   std::uint64_t stored_read() const { return stored_; }  ///< bytes of a compressed file
   std::uint64_t bytes_read() const { return read_; }

@@ -21,11 +21,13 @@
 #include "libchar/log/csv/head/dialect.hpp"
 #include "libchar/log/csv/head/header.hpp"
 #include "libchar/log/csv/head/plan.hpp"
+#include "libchar/log/csv/json_rows.hpp"
 #include "libchar/log/csv/rows/rows.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/detail/row_source.hpp"
+#include "libchar/log/tables/table_reader.hpp"
 #include "libchar/log/write/writers.hpp"
 
 namespace libchar {
@@ -128,33 +130,11 @@ class CsvSource final : public RowSource {
  public:
   CsvSource(const std::string& path, const ReadOptions& options)
       : options_(options), chunks_(path, options.block_bytes, options.hash) {
-    info_.file = path == "-" ? "standard input" : path;
-    info_.format = "csv";
-    const std::string_view head = chunks_.head();
-    if (head.empty() && chunks_.packed())
-      throw input_error("E0329", info_.file)
-          .says("the compressed data end before their first byte of text")
-          .hint("copy the file again");
-    dialect_ = understand(head, chunks_.whole(), options, info_);
-    if (dialect_.group_column >= 0)
-      plan_groups(options);
-    else
-      read_channels_ = columns_planned(options);
-    missing_per_channel_.assign(plan_.channels, 0);
-    fractional_.assign(plan_.channels, 0);
-    pending_ = std::exchange(info_.warnings, {});
-    info_.rows = expected_rows(head);
-    chunks_.start(dialect_);
-    next_line_ = dialect_.first_data_line;
-    info_.bytes = chunks_.size();
-    if (chunks_.packed()) info_.dialect.emplace_back(chunks_.packing());
-    info_.first_line = next_line_;
-    const int threads =
-        std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);
-    const bool small =
-        chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
-    if (threads > 1 && !small) read_ahead(threads);
-    info_.read_ahead = pipeline_ != nullptr;
+    begin(path == "-" ? "standard input" : path, options);
+  }
+  CsvSource(std::unique_ptr<Unpacker> text, const std::string& name, const ReadOptions& options)
+      : options_(options), chunks_(std::move(text), name, options.block_bytes) {
+    begin(name, options);
   }
   CsvSource(const CsvSource&) = delete;
   CsvSource& operator=(const CsvSource&) = delete;
@@ -208,11 +188,12 @@ class CsvSource final : public RowSource {
                                chunks_.nul_tail(),
                                chunks_.cut_bytes() > 0 ? " with the line they cut off" : ""),
                    place_name(next_line_, 1));
+    chunks_.finish(warnings);
     if (chunks_.packed_cut())
-      warnings.add("compressed_cut",
-                   "the compressed file ends before its end mark (cut?): the whole rows up to "
-                   "there are read",
-                   place_name(next_line_, 1));
+      warnings.add(
+          "compressed_cut",
+          "the file ends inside of what is packed (cut?): the whole rows up to there are read",
+          place_name(next_line_, 1));
     if (filtered_ > 0)
       info_.dialect.push_back(fmt::format("{} of other kinds left out", plural(filtered_, "row")));
     if (inexact_ > 0)
@@ -238,6 +219,41 @@ class CsvSource final : public RowSource {
   }
 
  private:
+  void begin(const std::string& name, const ReadOptions& options) {
+    info_.file = name;
+    const std::string_view head = chunks_.head();
+    if (head.empty() && chunks_.packed())
+      throw input_error("E0329", info_.file)
+          .says("the compressed data end before their first byte of text")
+          .hint("copy the file again");
+    info_.format = chunks_.format();
+    if (chunks_.made()) {
+      options_.delimiter = ",";
+      options_.decimal = "point";
+      if (chunks_.headed()) options_.header = "yes";
+    }
+    dialect_ = understand(head, chunks_.whole(), options_, info_);
+    if (dialect_.group_column >= 0)
+      plan_groups(options);
+    else
+      read_channels_ = columns_planned(options);
+    missing_per_channel_.assign(plan_.channels, 0);
+    fractional_.assign(plan_.channels, 0);
+    pending_ = std::exchange(info_.warnings, {});
+    info_.rows = expected_rows(head);
+    chunks_.start(dialect_);
+    next_line_ = dialect_.first_data_line;
+    info_.bytes = chunks_.size();
+    if (chunks_.packed()) info_.dialect.emplace_back(chunks_.packing());
+    info_.first_line = next_line_;
+    const int threads =
+        std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);
+    const bool small =
+        chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
+    if (threads > 1 && !small) read_ahead(threads);
+    info_.read_ahead = pipeline_ != nullptr;
+  }
+
   // The channels of each group: "Gyroscope_x", or the group alone where there is one.
   std::vector<Channel> columns_planned(const ReadOptions& options) {
     plan_ = plan_columns(dialect_, options, info_);
@@ -441,6 +457,16 @@ std::unique_ptr<RowSource> open(const std::string& path, const ReadOptions& opti
   return std::make_unique<CsvSource>(path, options);
 }
 
+}  // namespace
+
+std::unique_ptr<RowSource> open_text(std::unique_ptr<Unpacker> text,
+                                     const std::string& name,
+                                     const ReadOptions& options) {
+  return std::make_unique<CsvSource>(std::move(text), name, options);
+}
+
+namespace {
+
 // Text is what CSV may be: no control characters in front.
 bool sniff(const std::string&, std::string_view first_bytes) {
   const std::string_view front = first_bytes.substr(0, 4096);
@@ -465,6 +491,20 @@ Format csv_format() {
   row.sniff = csv::sniff;
   row.open = csv::open;
   row.write = write_csv;
+  return row;
+}
+
+Format jsonl_format() {
+  Format row = csv_format();
+  row.about.name = "jsonl";
+  row.about.title = "JSON lines";
+  row.about.suffixes = {".jsonl", ".ndjson"};
+  row.about.otherwise = "what begins with an object";
+  row.about.units = "as suffixes";
+  row.about.written_suffixes = {};
+  row.about.from_pipes = false;
+  row.sniff = [](const std::string&, std::string_view front) { return csv::is_json_rows(front); };
+  row.write = nullptr;
   return row;
 }
 

@@ -14,12 +14,12 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/rows/stamps.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
+#include "libchar/log/detail/odd_values.hpp"
 
 namespace libchar::csv {
 namespace {
 
 constexpr std::size_t kMostKinds = 64, kMostNumbers = 16;
-constexpr double kApart = 0.02;  ///< of a turn: closer stamps are those of one instant
 
 bool names_kinds(std::string_view name) {
   static constexpr std::array<std::string_view, 22> kNames = {
@@ -141,12 +141,6 @@ std::size_t column_named(const std::string& wanted, const Dialect& dialect, cons
       .hint(did_you_mean(nearest(wanted, names), "it has " + first_names(names)));
 }
 
-// Groups that come in turn: how long behind the first of its turn each is stamped, and from one turn to the next.
-struct Turns {
-  std::vector<double> behind_s;
-  double period_s = 0;
-};
-
 Turns turns_of(const std::vector<Cells>& rows, const Dialect& dialect) {
   const std::size_t n = dialect.groups.size();
   std::vector<std::vector<double>> behind(n);
@@ -167,25 +161,6 @@ Turns turns_of(const std::vector<Cells>& rows, const Dialect& dialect) {
   Turns out{std::vector<double>(n), middle(periods)};
   std::transform(behind.begin(), behind.end(), out.behind_s.begin(), middle);
   return out;
-}
-
-// A row holds samples of several instants.
-void say_apart(const Turns& turns, const Dialect& dialect, Findings& findings) {
-  for (std::size_t k = 1; k < turns.behind_s.size(); ++k)
-    if (turns.behind_s[k] > kApart * turns.period_s)
-      findings.add("stamps_apart",
-                   "channels of one row never share a stamp: they were sampled one after the other",
-                   fmt::format("{} {} behind {}",
-                               dialect.groups[k],
-                               duration_text(turns.behind_s[k]),
-                               dialect.groups[0]));
-  const Finding* said = findings.find("stamps_apart");
-  if (said == nullptr) return;
-  const double period = turns.period_s;
-  findings.add("stamps_apart", "", {}, 0)
-      .help.push_back(
-          {"A replay interpolates each by its own stamps to one grid.",
-           {{"resample_hz", period > 1 ? "1/" + shortest(period) : shortest(1 / period)}}});
 }
 
 }  // namespace
@@ -233,7 +208,7 @@ void choose_groups(const std::vector<Cells>& rows,
   }
   dialect.cycles = n > 1 && cyclic && !together && !options.kinds.own_stamps;
   if (dialect.cycles && dialect.time.column >= 0)
-    say_apart(turns_of(rows, dialect), dialect, info.warnings);
+    say_apart(dialect.groups, turns_of(rows, dialect), info.warnings);
   if (n > 1 && changes < n && rows.size() > 2 * n)
     throw usage_error("E0328", info.file)
         .says("the rows of one kind come behind those of another, and are not side by side: " +

@@ -8,6 +8,9 @@
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/utf8.hpp"
+#include "libchar/log/csv/json_rows.hpp"
+#include "libchar/log/csv/lvm_rows.hpp"
+#include "libchar/log/csv/sentence_rows.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_ZLIB
@@ -233,7 +236,7 @@ Packing packing_of(std::string_view first_bytes) {
   if (first_bytes.starts_with("\x28\xB5\x2F\xFD")) return Packing::zstd;
   if (first_bytes.starts_with(std::string_view("\xFD"
                                                "7zXZ\0",
-                                               kPackingBytes)))
+                                               6)))
     return Packing::xz;
   constexpr std::size_t kMark = 2;
   if (first_bytes.size() > kMark &&
@@ -241,7 +244,9 @@ Packing packing_of(std::string_view first_bytes) {
     if (first_bytes.starts_with("\xFF\xFE")) return Packing::utf16le;
     if (first_bytes.starts_with("\xFE\xFF")) return Packing::utf16be;
   }
-  return Packing::none;
+  if (is_lvm(first_bytes)) return Packing::lvm;
+  if (is_sentences(first_bytes)) return Packing::sentences;
+  return is_json_rows(first_bytes) ? Packing::json : Packing::none;
 }
 
 std::unique_ptr<Unpacker> make_unpacker(
@@ -255,6 +260,12 @@ std::unique_ptr<Unpacker> make_unpacker(
     case Packing::utf16be:
       return std::make_unique<FromUtf16>(StoredBytes(std::move(stored), file),
                                          packing == Packing::utf16be);
+    case Packing::json:
+      return open_json_rows(std::move(stored), file);
+    case Packing::sentences:
+      return open_sentence_rows(std::move(stored), file);
+    case Packing::lvm:
+      return open_lvm_rows(std::move(stored), file);
     case Packing::gzip:
 #if LIBCHAR_HAVE_ZLIB
       return std::make_unique<Gunzip>(StoredBytes(std::move(stored), file));

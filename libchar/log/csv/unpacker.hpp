@@ -10,13 +10,15 @@
 #include <string>
 #include <string_view>
 
+#include "libchar/core/finding.hpp"
+
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz, utf16le, utf16be };
+enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences };
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);
-inline constexpr std::size_t kPackingBytes = 6;  ///< that it looks at
+inline constexpr std::size_t kPackingBytes = 64;  ///< that it looks at
 
 class Unpacker {
  public:
@@ -26,6 +28,12 @@ class Unpacker {
   /// The stored data ended before their end mark.
   virtual bool cut() const = 0;
   virtual std::string_view what() const { return "compressed"; }
+  /// Is the text made by this program, with commas, points and, if so, a header?
+  virtual bool made() const { return false; }
+  virtual bool headed() const { return made(); }
+  /// In the table of formats.
+  virtual std::string_view format() const { return "csv"; }
+  virtual void finish(Findings& findings) const { static_cast<void>(findings); }
 };
 
 /// `stored` gives the file's bytes, 0 at its end. Throws Error(input) where this build lacks the library.

@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
+
 namespace libchar {
 
 std::string missing_cells(const std::vector<Channel>& channels,
@@ -20,6 +26,31 @@ std::string missing_cells(const std::vector<Channel>& channels,
         fmt::format("{}{} {}", listed == 1 ? "" : ", ", channels[c].name, missing_per_channel[c]);
   }
   return message + ")";
+}
+
+void say_apart(const std::vector<std::string>& names, const Turns& turns, Findings& findings) {
+  constexpr double kApart = 0.02;  // of a turn: closer stamps are those of one instant
+  for (std::size_t k = 1; k < turns.behind_s.size(); ++k) {
+    const double behind = turns.behind_s[k];
+    if (std::fabs(behind) > kApart * turns.period_s)
+      findings.add("stamps_apart",
+                   "channels of one row never share a stamp: they were sampled one after the other",
+                   fmt::format("{} {} {} {}",
+                               printable(names[k]),
+                               duration_text(std::fabs(behind)),
+                               behind > 0 ? "behind" : "before",
+                               printable(names[0])));
+  }
+  if (findings.find("stamps_apart") == nullptr) return;
+  const double period = turns.period_s;
+  const auto four_digits = [](double value) {
+    const double unit = std::pow(10, 3 - std::floor(std::log10(value)));
+    return shortest(std::round(value * unit) / unit);
+  };
+  findings.add("stamps_apart", "", {}, 0)
+      .help.push_back(
+          {"A replay interpolates each by its own stamps to one grid.",
+           {{"resample_hz", period > 1 ? "1/" + four_digits(period) : four_digits(1 / period)}}});
 }
 
 }  // namespace libchar

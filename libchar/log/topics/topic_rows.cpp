@@ -15,6 +15,7 @@
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/odd_values.hpp"
+#include "libchar/log/tables/table_reader.hpp"
 
 namespace libchar {
 
@@ -105,23 +106,25 @@ bool is_instance_of(const std::string& name, const std::string& wanted) {
          name.find_first_not_of("0123456789", front) == std::string::npos;
 }
 
-std::size_t named_topic(const std::vector<LogTopic>& topics,
-                        const std::string& wanted,
-                        const std::string& file) {
+/// Those that can be read.
+std::vector<std::size_t> topics_named(const std::vector<LogTopic>& topics,
+                                      const std::string& wanted) {
   std::vector<std::size_t> found;
   for (std::size_t t = 0; t < topics.size(); ++t) {
-    if (topics[t].name == wanted) return t;
+    if (topics[t].name == wanted) return {t};
     const bool fits = is_pattern(wanted) ? matches(wanted, topics[t].name)
                                          : is_instance_of(topics[t].name, wanted);
     if (fits && readable(topics[t])) found.push_back(t);
   }
-  if (found.size() == 1) return found[0];
+  return found;
+}
+
+std::size_t named_topic(const std::vector<LogTopic>& topics,
+                        const std::string& wanted,
+                        const std::string& file) {
+  const std::vector<std::size_t> found = topics_named(topics, wanted);
+  if (!found.empty()) return found[0];
   const std::vector<std::string> names = readable_names(topics);
-  if (found.size() > 1)
-    throw usage_error("E0425", file)
-        .says("several topics match this name, one is read at a time")
-        .got(wanted)
-        .hint("`topic` {} chooses one", topics[found.front()].name);
   throw usage_error("E0425", file)
       .says("there is no topic of this name")
       .got(wanted)
@@ -212,6 +215,35 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
                   printable(topics[sensors[0]].name),
                   usable.size());
   return choice;
+}
+
+std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics,
+                                       const ReadOptions& options,
+                                       const std::string& file) {
+  const std::vector<std::size_t> named = topics_named(topics, options.topic);
+  if (options.topic.empty() || named.size() < 2) return {};
+  std::vector<ReadOptions> parts(named.size(), options);
+  for (ReadOptions& part : parts) part.channels.clear();
+  for (const std::string& word : options.channels) {
+    const std::set<std::size_t> having = topics_of(topics, word.substr(excludes(word) ? 1 : 0));
+    bool known = false;
+    for (std::size_t k = 0; k < named.size(); ++k)
+      if (having.contains(named[k])) {
+        parts[k].channels.push_back(word);
+        known = true;
+      }
+    if (known) continue;
+    std::vector<std::string> names;
+    for (const std::size_t t : named)
+      for (const Channel& field : topics[t].fields)
+        names.push_back(topics[t].name + "/" + field.name);
+    refuse_channel(word, names, options, file);
+  }
+  std::vector<TopicChoice> chosen;
+  for (std::size_t k = 0; k < named.size(); ++k)
+    if (!chooses(options) || chooses(parts[k]))
+      chosen.push_back(choice_of(topics, named[k], parts[k]));
+  return chosen;
 }
 
 void refuse_without_topic(const std::vector<LogTopic>& topics,
@@ -414,6 +446,10 @@ std::unique_ptr<RowSource> open_topic_rows(std::unique_ptr<TopicReader> reader,
                                            const std::string& path,
                                            std::string_view format,
                                            const ReadOptions& options) {
+  if (auto* tables = dynamic_cast<TableReader*>(reader.get())) {
+    static_cast<void>(reader.release());
+    return open_table_rows(std::unique_ptr<TableReader>(tables), path, format, options);
+  }
   return std::make_unique<TopicRows>(std::move(reader), path, format, options);
 }
 

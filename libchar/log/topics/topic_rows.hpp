@@ -30,6 +30,13 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
                                         const ReadOptions& options,
                                         const std::string& file);
 
+/// The topics that `options.topic` names where those are several, instances of one name or by a pattern, each with the
+/// channels asked for of it (TOPIC/FIELD, FIELD or a pattern); without those that have none of them. Empty where one
+/// topic is named. Throws Error(usage) for a word that no topic knows.
+std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics,
+                                       const ReadOptions& options,
+                                       const std::string& file);
+
 /// The sentence for a log whose topic has to be chosen first, Error(usage), or that has none which
 /// can be read, Error(input): what it lost (`losses`) may be the reason.
 [[noreturn]] void refuse_without_topic(const std::vector<LogTopic>& topics,

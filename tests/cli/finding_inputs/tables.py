@@ -49,7 +49,14 @@ def plain():
     return "\n".join(gyro_lines()) + "\n"
 
 
+def late_key():
+    """A key that is not in the first quarter of a MiB of objects."""
+    rows = [f'{{"t": {i / 100}, "w [deg/s]": {v:.17g}}}' for i, v in enumerate(noise(8000))]
+    return "\n".join(rows[:-1] + [rows[-1].replace("{", '{"battery": 3, ')]) + "\n"
+
+
 INPUTS = {
+    "late_key": Input(text("late.jsonl", late_key)),
     "bad_row": Input(text("bad_row.csv", with_line(500, "5.0,noise")), ("--bad-rows", "drop")),
     "blank_line": Input(text("blank.csv", with_line(500, ""))),
     "comment_line": Input(text("comment.csv", with_line(500, "# a pause"))),

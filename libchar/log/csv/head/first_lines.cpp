@@ -183,6 +183,13 @@ bool line_of_units(const Cells& line) {
   return units > 0 && units >= others;
 }
 
+// Shimmer has a line between names and units that says what was done with the values.
+bool states_calibration(const Cells& line) {
+  return std::all_of(line.begin(), line.end(), [](const Field& field) {
+    return field.text == "CAL" || field.text == "RAW" || field.text.empty();
+  });
+}
+
 // Campbell's table-oriented ASCII: station, names, units, what was done with the values.
 bool campbell(const std::vector<Cells>& lines) {
   return lines.size() > 4 && (lines[0][0].text == "TOA5" || lines[0][0].text == "TOACI1");
@@ -223,6 +230,8 @@ TableStart find_table_start(const std::vector<Cells>& lines,
       out.units = last - 1;
       out.names = last - 2;
     }
+    if (last > 2 && states_calibration(lines[*out.names]) && census[*out.names - 1].words())
+      --*out.names;
     return out;
   }
   // No line of words: names with numbers among them (c, 1, 2), or a row that is damaged.

@@ -1,0 +1,71 @@
+#pragma once
+// Tables that are made of something else (JSON lines, sheets of workbooks, printed messages): text with one header line
+// and commas between the cells, which then goes the way of every CSV file.
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "libchar/log/csv/unpacker.hpp"
+
+namespace libchar::csv {
+
+/// Bytes that come piece by piece, of which those from `at` on are not used up.
+struct Feed {
+  std::function<std::size_t(char*, std::size_t)> stored;
+  std::string raw = {};
+  std::size_t at = 0;
+  bool ended = false;
+  /// Forgets what is used up and reads on; false at the end.
+  bool more() {
+    constexpr std::size_t kPiece = std::size_t{1} << 16U;
+    if (ended) return false;
+    raw.erase(0, at);
+    at = 0;
+    const std::size_t before = raw.size();
+    raw.resize(before + kPiece);
+    const std::size_t got = stored(raw.data() + before, kPiece);
+    raw.resize(before + got);
+    ended = got == 0;
+    return !ended;
+  }
+};
+
+class MadeText : public Unpacker {
+ public:
+  std::size_t read(char* to, std::size_t n) final {
+    while (at_ == text_.size() && !done_) {
+      text_.clear();
+      at_ = 0;
+      done_ = !more(text_);
+    }
+    const std::size_t taken = text_.copy(to, n, at_);
+    at_ += taken;
+    return taken;
+  }
+  bool cut() const final { return cut_; }
+  bool made() const final { return true; }
+
+ protected:
+  /// Adds the next rows; false behind the last one.
+  virtual bool more(std::string& text) = 0;
+  void end_is_cut() { cut_ = true; }
+
+  /// In quotes, whatever it holds.
+  static void add_quoted(std::string& row, std::string_view cell) {
+    row += '"';
+    for (const char c : cell) {
+      if (c == '"') row += '"';
+      if (c != '\0') row += c;
+    }
+    row += '"';
+  }
+
+ private:
+  std::string text_;
+  std::size_t at_ = 0;
+  bool done_ = false, cut_ = false;
+};
+
+}  // namespace libchar::csv
