@@ -141,10 +141,25 @@ async function severalLogs(one) {
   await one.has("left/report.html", "middle/report.html", "right/report.html");
   await one.tab.getByLabel("Report", { exact: true }).selectOption({ label: "reports/right" });
   await one.report("right.csv");
-  await one.run("Compare two reports");
-  check((await one.text()).includes("gyro_x"), "the comparison is shown");
-  await one.run("Compare devices: which one?");
+  await one.run("Which one?");
+  check((await one.command()).startsWith("sensorchar compare left.csv middle.csv right.csv"), "all that was dropped is compared");
+  await one.report("Lowest N: middle");
+  await one.run("Which one?", async tab => {
+    for (const name of ["middle.csv", "right.csv"]) await tab.getByRole("checkbox", { name, exact: true }).uncheck();
+    await tab.getByRole("checkbox", { name: "reports/right", exact: true }).check();
+  });
+  check((await one.command()).startsWith("sensorchar compare left.csv reports/right"), "a recording is compared with a report");
+  await one.report("Lowest N: left");
+  await one.run("A lot of one kind");
   await one.report("middle");
+}
+
+/** A recording, a report, a model and a curve in one comparison. */
+async function anythingCompared(one) {
+  const files = [path.join(ROOT, "fixtures/imu_at_rest.csv"), path.join(one.folder, "report.json"), path.join(one.folder, "gyro_z.sensor.yaml"), curve(one.folder)];
+  check(await one.drop(...files) === "done", "a recording, a report, a model and a curve are read");
+  await one.run("Which one?");
+  await one.report("imu_at_rest", "report", "gyro_z", "sheet");
 }
 
 async function anArray(one) {
@@ -205,7 +220,7 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, printed, severalLogs, anArray, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, printed, severalLogs, anythingCompared, anArray, aModel, aReport, aCurve, cancelled, byKeys };
 
 async function uses(browser, page, folder) {
   for (const [name, scene] of Object.entries(SCENES)) {

@@ -237,7 +237,7 @@ function drawFiles() {
 }
 
 /** Pages of reports, the overview first. */
-const PAGE = /(^|\/)(report|index|runs)\.html$/;
+const PAGE = /(^|\/)(report|index|runs|which[^/]*)\.html$/;
 const pagesOf = files => files.filter(({ name }) => PAGE.test(name)).sort((a, b) => a.name.split("/").length - b.name.split("/").length);
 
 /** Prints itself when the page asks for it: from outside, nobody may. In front of the report's own policy, which allows no other script. */

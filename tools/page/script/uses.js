@@ -28,6 +28,14 @@ function figureWords(bench, source) {
 }
 
 const characterizeWords = (logs, use, out) => ["characterize", ...names(logs), ...readingOf(logs), ...optionWords(use.values), "-o", out];
+/** What `compare` can hold against each other: of sensors anything, of replays nothing but replays. `begin`: what was dropped, else what was made. */
+function sidesOf(bench) {
+  const isReplay = ({ kind }) => kind === "replay", dropped = new Set(names(bench.items));
+  const reports = names(bench.subjects.filter(one => !isReplay(one))), replays = names(bench.subjects.filter(isReplay)), sensors = [...names(bench.logs), ...reports];
+  const begin = [sensors.filter(name => dropped.has(name)), reports, replays].find(sides => sides.length > 1);
+  return { all: [...sensors, ...replays], begin };
+}
+
 const TABLES = [["md", "Markdown", []], ["tex", "LaTeX", ["--latex"]], ["csv", "CSV", ["--csv"]]];
 
 const base = { main: [], hidden: [] };
@@ -51,23 +59,21 @@ const USES = [
     },
   },
   {
-    ...base, id: "lot", label: "Compare devices: which one?", verb: "characterize", hidden: ["--lot", "--pool", "--unit"],
-    fits: bench => bench.logs.length > 1,
-    words: (bench, use) => [...characterizeWords(bench.logs, use, bench.free("lot")), "--lot"],
+    ...base, id: "compare", label: "Which one?", verb: "compare", made: true, main: [["--channel", "Channels"], ["--still", "Only a still stretch"], ["--limits", "Limits of a data sheet"]],
+    hidden: ["--unit", "--markdown", "--latex", "--csv"],
+    fits: bench => sidesOf(bench).begin !== undefined,
+    choices: (bench, use, changed) => {
+      const { all, begin } = sidesOf(bench);
+      if (use.begin !== begin.join()) Object.assign(use, { begin: begin.join(), inputs: new Set(begin) });
+      return [choices("Compare", all, use.inputs, changed)];
+    },
+    words: (bench, use) => ["compare", ...use.inputs, ...readingOf(bench.logs.filter(({ name }) => use.inputs.has(name))), ...optionWords(use.values),
+      "-o", bench.free("which.html")],
   },
   {
-    ...base, id: "compare", label: "Compare two reports", verb: "compare", made: true,
-    fits: bench => reportsOf(bench).length > 1,
-    choices: (bench, use, changed) => {
-      const reports = reportsOf(bench), take = key => value => {
-        use[key] = value;
-        changed();
-      };
-      use.a = first(reports, use.a);
-      use.b = use.b && use.b !== use.a ? first(reports, use.b) : reports.find(({ name }) => name !== use.a).name;
-      return [choice("First", entriesOf(reports), use.a, take("a")), choice("Second", entriesOf(reports), use.b, take("b"))];
-    },
-    words: (bench, use) => ["compare", use.a, use.b, ...optionWords(use.values)],
+    ...base, id: "lot", label: "A lot of one kind", verb: "characterize", hidden: ["--lot", "--pool", "--unit"],
+    fits: bench => bench.logs.length > 1,
+    words: (bench, use) => [...characterizeWords(bench.logs, use, bench.free("lot")), "--lot"],
   },
   {
     ...base, id: "replay", label: "An array: best fusion", verb: "replay",
