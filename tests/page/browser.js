@@ -1,20 +1,49 @@
 // The page in a browser: files are dropped on it, every request is recorded, and what comes of it is looked at.
 //
-// usage: node browser.js PAGE [--browser chromium|firefox] [--only STEP] [--screens FOLDER] [FILE…]     NODE_PATH has playwright-core and axe-core
-// FILE: logs (default: the fixtures). Prints a row per file: state, seconds, heap is the browser's. Exit code 1 where something is wrong.
+// usage: node browser.js PAGE [--browser chromium|firefox] [--only STEP] [--screens FOLDER] [--native PROGRAM] [FILE…]
+// NODE_PATH has playwright-core and axe-core. FILE: logs (default: the fixtures); what stands beside one goes with it. Prints a row per file:
+// state, seconds to the first number and to the end, the largest heap of the program; with PROGRAM its seconds for the same by one thread.
+// Exit code 1 where something is wrong.
 "use strict";
+const { spawnSync } = require("child_process");
 const fs = require("fs"), os = require("os"), path = require("path");
 const { ROOT, faults, check, fixtures, opened, dropped, launched } = require("./support.js");
 const { uses } = require("./uses.js");
 
-async function everyFile(browser, page, files) {
+/** Seconds of the native program for what the page does with a file: inspect, and characterize where it did. */
+function nativeSeconds(program, file, characterized, folder) {
+  const verbs = [["inspect", file, "--json", "--threads", "1"], ["characterize", file, "--threads", "1", "-q", "--force", "-o", path.join(folder, "native")]];
+  const begin = process.hrtime.bigint();
+  for (const words of verbs.slice(0, characterized ? 2 : 1)) spawnSync(program, words);
+  return Number(process.hrtime.bigint() - begin) / 1e9;
+}
+
+/** The largest heap that the program has had in any worker from now on, in window.heap. */
+const watchHeap = tab => tab.evaluate(() => {
+  const run = pool.run.bind(pool);
+  pool.run = async job => {
+    const answer = await run(job);
+    window.heap = Math.max(window.heap || 0, answer.heap || 0);
+    return answer;
+  };
+});
+
+async function everyFile(browser, page, files, program, folder) {
+  const heads = ["file", "MB", "state", "first s", "all s", "heap MB", ...program ? ["native s"] : []];
+  console.log(heads.join("\t"));
+  const sums = { first: 0, all: 0, native: 0 };
   for (const file of files) {
     const { tab, context, requests, said } = await opened(browser, page);
     try {
-      const { end, first, all } = await dropped(tab, [file]);
+      await watchHeap(tab);
+      const beside = [file.replace(/\.[^.]*$/, ".yaml"), `${file}.yaml`, `${file}.json`].filter(name => name !== file && fs.existsSync(name));
+      const { end, first, all } = await dropped(tab, [file, ...beside]);
       const links = await tab.locator("#files a[download]").count(), frame = await tab.locator("#report:not([hidden])").count();
       const text = end === "error" ? (await tab.locator("#error, #found .bad").allInnerTexts()).join(" ").trim() : "";
-      console.log([path.relative(ROOT, file), end, first / 1e3, all / 1e3, `${links} files`, text.split("\n")[0].slice(0, 110)].join("\t"));
+      const heap = await tab.evaluate(() => window.heap || 0), native = program ? nativeSeconds(program, file, links > 0, folder) : 0;
+      Object.entries({ first, all, native: native * 1e3 }).forEach(([name, ms]) => sums[name] += ms / 1e3);
+      console.log([path.basename(file), (fs.statSync(file).size / 1e6).toFixed(2), end, (first / 1e3).toFixed(2), (all / 1e3).toFixed(2), (heap / 1e6).toFixed(0),
+        ...program ? [native.toFixed(2)] : [], text.split("\n")[0].slice(0, 110)].join("\t"));
       check(end === "done" || /E\d{4}/.test(text), `${file}: an error without a code: ${text}`);
       check(frame === 0 || links >= 3, `${file}: a report without files`);
     } catch (error) {
@@ -24,6 +53,7 @@ async function everyFile(browser, page, files) {
     check(said.length === 0, `${file}: the console says ${said.slice(0, 3)}`);
     await context.close();
   }
+  console.log(`${files.length} files: ${sums.first.toFixed(1)} s to the first numbers, ${sums.all.toFixed(1)} s in all${program ? `, ${sums.native.toFixed(1)} s native` : ""}`);
 }
 
 /** Names and cells of a log that would be markup, if anybody took them for it. */
@@ -87,7 +117,7 @@ async function main() {
     const at = words.indexOf(name);
     return at < 0 ? undefined : words.splice(at, 2)[1];
   };
-  const kind = named("--browser") || "chromium", folder = named("--screens"), only = named("--only");
+  const kind = named("--browser") || "chromium", folder = named("--screens"), only = named("--only"), program = named("--native");
   const [page, ...files] = words;
   const scratch = fs.mkdtempSync(path.join(os.tmpdir(), "page-"));
   const browser = await launched(kind);
@@ -96,7 +126,7 @@ async function main() {
     injections: () => injections(browser, page, scratch),
     accessible: () => accessible(browser, page),
     screens: () => folder && screens(browser, page, folder),
-    files: () => everyFile(browser, page, files.length > 0 ? files : fixtures()),
+    files: () => everyFile(browser, page, files.length > 0 ? files : fixtures(), program, scratch),
   };
   for (const [name, step] of Object.entries(steps)) if (!only || only === name) {
     try {

@@ -162,6 +162,16 @@ async function anythingCompared(one) {
   await one.report("imu_at_rest", "report", "gyro_z", "sheet");
 }
 
+/** What a file does not say of itself can be said where it was refused. */
+async function toldHow(one) {
+  check(await one.drop(path.join(ROOT, "fixtures/arrays/float.imu")) === "error", "a log without a header is refused");
+  await one.tab.getByText("Say how it is read").click();
+  await one.tab.getByLabel("--preset", { exact: true }).fill("NAVCHIP_FLT");
+  await one.tab.getByRole("button", { name: "Read it again" }).click();
+  await one.ended("told how");
+  check((await one.command()).includes("--preset NAVCHIP_FLT"), "how it is read is in the command");
+}
+
 async function anArray(one) {
   check(await one.drop(array(one.folder)) === "done", "an array is read");
   const use = "An array: best fusion";
@@ -220,7 +230,7 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, printed, severalLogs, anythingCompared, anArray, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, printed, severalLogs, anythingCompared, toldHow, anArray, aModel, aReport, aCurve, cancelled, byKeys };
 
 async function uses(browser, page, folder) {
   for (const [name, scene] of Object.entries(SCENES)) {

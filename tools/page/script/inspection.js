@@ -92,6 +92,16 @@ function chosen(item, changed) {
   return rows.length > 0 ? element("ul", { class: "seen" }, ...rows) : null;
 }
 
+/** Of a recording that was refused: all that says how one is read. */
+function readingOptions(item, changed) {
+  const asked = verbOf("inspect").options.filter(({ group, flags }) => group.startsWith("Reading") && !flags.some(flag => NOT_ASKED.has(flag)));
+  const again = () => {
+    for (const [flag, value] of item.reading) if (!value) item.reading.delete(flag);
+    changed();
+  };
+  return element("details", {}, element("summary", {}, "Say how it is read"), ...optionGroups(asked, item.reading, () => {}), button("Read it again", again, { class: "run" }));
+}
+
 /** The inside of an item's card. */
 function inspectionView(item, changed) {
   const { recording } = item;

@@ -33,6 +33,14 @@ function control(option, values, changed) {
 const optionField = (option, values, changed, label) =>
   field(label || longFlag(option), control(option, values, changed), option.help + (option.only ? ` (only ${option.only})` : ""), option.kind === "flag" ? "flag" : "");
 
+/** Fields by the groups of the help. */
+function optionGroups(options, values, changed) {
+  const groups = new Map();
+  for (const option of options) groups.set(option.group, [...(groups.get(option.group) || []), option]);
+  return [...groups].map(([group, some]) => element("fieldset", {}, element("legend", {}, group || "This verb"),
+    element("div", { class: "fields" }, ...some.map(option => optionField(option, values, changed)))));
+}
+
 /** Main options in front, all others folded, by the groups of the help. */
 function optionFields(verbName, use, changed) {
   const verb = verbOf(verbName), asked = verb.options.filter(option => !option.flags.some(flag => NOT_ASKED.has(flag) || use.hidden.includes(flag)));
@@ -44,11 +52,7 @@ function optionFields(verbName, use, changed) {
     parts.push(use.folded ? element("details", {}, element("summary", {}, "Frequent options"), fields) : fields);
   }
   if (rest.length === 0) return parts;
-  const groups = new Map();
-  for (const option of rest) groups.set(option.group, [...(groups.get(option.group) || []), option]);
-  parts.push(element("details", {}, element("summary", {}, `All options of ${typed(verbName).join(" ")}`),
-    ...[...groups].map(([group, options]) => element("fieldset", {}, element("legend", {}, group || "This verb"),
-      element("div", { class: "fields" }, ...options.map(option => optionField(option, use.values, changed)))))));
+  parts.push(element("details", {}, element("summary", {}, `All options of ${typed(verbName).join(" ")}`), ...optionGroups(rest, use.values, changed)));
   return parts;
 }
 

@@ -101,7 +101,7 @@ function card(item) {
     const code = CODE.exec(item.error);
     const box = element("ul", { class: "seen" }, element("li", { class: "bad" }, item.error,
       code ? button(`What ${code[1]} means`, () => command([["explain", code[1]]], { keep: true })) : null));
-    return element("article", {}, head, box, chosen(item, changed));
+    return element("article", {}, head, box, chosen(item, changed), item.kind === "log" ? readingOptions(item, changed) : null);
   }
   if (item.recording) return element("article", {}, head, ...inspectionView(item, changed).filter(Boolean));
   const about = { model: "sensor model", report: "report", scene: "scene", fusion: "result of a replay", beside: "read with what stands beside it", log: "" }[item.kind];

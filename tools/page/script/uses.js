@@ -31,7 +31,8 @@ const characterizeWords = (logs, use, out) => ["characterize", ...names(logs), .
 /** What `compare` can hold against each other: of sensors anything, of replays nothing but replays. `begin`: what was dropped, else what was made. */
 function sidesOf(bench) {
   const isReplay = ({ kind }) => kind === "replay", dropped = new Set(names(bench.items));
-  const reports = names(bench.subjects.filter(one => !isReplay(one))), replays = names(bench.subjects.filter(isReplay)), sensors = [...names(bench.logs), ...reports];
+  const reports = names(bench.subjects.filter(one => !isReplay(one))), replays = names(bench.subjects.filter(isReplay));
+  const sensors = [...new Set([...names(bench.logs), ...names(bench.tables), ...reports])]; // a table of curves is no recording
   const begin = [sensors.filter(name => dropped.has(name)), reports, replays].find(sides => sides.length > 1);
   return { all: [...sensors, ...replays], begin };
 }
