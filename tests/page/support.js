@@ -1,6 +1,6 @@
 // What the tests of the page share: a page opened with every request recorded, files dropped on it, faults counted.
 "use strict";
-const fs = require("fs"), os = require("os"), path = require("path");
+const fs = require("fs"), http = require("http"), path = require("path");
 const playwright = require("playwright-core");
 
 const ROOT = path.resolve(__dirname, "../..");
@@ -25,12 +25,28 @@ function fixtures() {
   return [path.join(ROOT, "fixtures/imu_at_rest.csv"), ...found];
 }
 
-async function opened(browser, page, options = {}) {
-  const context = await browser.newContext({ acceptDownloads: true, ...options });
+/** Addresses outside of the page that a context asks for, as they come. */
+function requestsOf(context) {
   const requests = [];
   context.on("request", request => {
-    if (!/^(data|blob):|^about:srcdoc/.test(request.url())) requests.push(request.url());
+    if (!/^(data|blob|file):|^about:/.test(request.url())) requests.push(request.url());
   });
+  return requests;
+}
+
+/** Does the browser tell of requests at all? */
+async function recorderWorks(browser) {
+  const server = http.createServer((request, response) => response.end()).listen(0, "127.0.0.1");
+  const context = await browser.newContext(), requests = requestsOf(context), tab = await context.newPage();
+  await tab.evaluate(port => fetch(`http://127.0.0.1:${port}/`, { mode: "no-cors" }), server.address().port);
+  check(requests.length === 1, `a request is recorded: ${requests}`);
+  await context.close();
+  server.close();
+}
+
+async function opened(browser, page, options = {}) {
+  const context = await browser.newContext({ acceptDownloads: true, ...options });
+  const requests = requestsOf(context);
   const tab = await context.newPage();
   const said = [];
   tab.on("console", message => {
@@ -66,4 +82,4 @@ async function dropped(tab, files) {
 /** A browser by its name. */
 const launched = kind => playwright[kind].launch(BROWSERS[kind]);
 
-module.exports = { ROOT, LIMIT_MS, faults, check, fixtures, opened, state, dropped, launched };
+module.exports = { ROOT, LIMIT_MS, faults, check, fixtures, recorderWorks, opened, state, dropped, launched };
