@@ -31,6 +31,7 @@ OF_THE_RUN = {"tool", "command", "measured", "seconds", "files_sha256", "iterati
 # Exact ramps and steps: what is left of them is the rounding of sines and logarithms, and so are the
 # coefficients. Their ratings are compared.
 ROUNDING = {"jazzy.db3", "085_jitter.csv"}
+FORECASTS = {"relative_sd", "bound_relative_sd", "seconds_for_10_percent"}
 LOGS = ["imu_at_rest.csv", "arrays/*.npz", "arrays/*.h5", "arrays/*.mat", "arrays/*.imu", "flight/*.ulg",
         "flight/*.bin", "npy/*.npy", "packed/table.csv.*", "ros/*.db3", "ros/*.mcap", "ros/*.bag",
         "known/badinputs/csv/*", "known/badinputs/npy/*.npy"]
@@ -58,9 +59,13 @@ class Runs:
 
 def tolerance(a, b, width, where):
     size = max(abs(a), abs(b))
-    # A residual is in standard deviations: these are its interval. A likelihood ratio scatters by twice its root.
+    # A residual is in standard deviations: its interval is 2 · 1.96 wide.
     if "/residuals/z[" in where:
-        return NEAR
+        return NEAR * max(3.92, size)
+    # What more data would bring is said to two digits.
+    if where.rsplit("/", 1)[-1] in FORECASTS:
+        return 1e-4 * size
+    # It scatters by twice its root.
     if where.endswith("likelihood_ratio"):
         return NEAR * (1 + 2 * math.sqrt(size))
     return max(NEAR * width, 1e-12 * size) if width else max(NEAR * size, 1e-300)
