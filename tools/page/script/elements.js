@@ -15,6 +15,9 @@ function element(name, about = {}, ...children) {
   return made;
 }
 
+/** Text whose options no line breaks inside: "--" and "rate" stay together. */
+const unbroken = text => text.split(/(\S*--\S+)/).map((part, i) => i % 2 === 1 ? element("span", { class: "word" }, part) : part);
+
 const button = (text, onclick, about = {}) => element("button", { type: "button", onclick, ...about }, text);
 
 let fieldNumber = 0;

@@ -38,7 +38,7 @@ function channelTable(item, recording, changed) {
 
 /** A finding with its remedies: those that are options of the same command are buttons. */
 function seen(finding, subject, item, changed) {
-  const parts = [subject ? element("strong", {}, `${subject}: `) : null, withFlags(finding.sentence, USAGE.settings)];
+  const parts = [subject ? element("strong", {}, `${subject}: `) : null, ...unbroken(withFlags(finding.sentence, USAGE.settings))];
   for (const remedy of finding.remedies || []) {
     const options = (remedy.options || []).filter(({ option }) => USAGE.settings[option]);
     const sentence = withFlags(remedy.sentence, USAGE.settings);

@@ -31,7 +31,7 @@ const bench = {
     return freeName(name, taken);
   },
 };
-let pool = null, use = null, running = 0;
+let pool = null, use = null, picked = false, running = 0; // picked: the use was asked for, not the first that fits
 
 function setState(state, text) {
   document.documentElement.dataset.state = state;
@@ -44,7 +44,7 @@ function showError(text, code) {
   box.hidden = !text;
   box.replaceChildren();
   if (!text) return;
-  box.append(element("p", {}, text));
+  box.append(element("p", {}, ...unbroken(text)));
   if (code) box.append(button(`What ${code} means`, () => command([["explain", code]], { keep: true })));
 }
 
@@ -99,7 +99,7 @@ function card(item) {
   const head = element("h3", {}, item.name, remove);
   if (item.error) {
     const code = CODE.exec(item.error);
-    const box = element("ul", { class: "seen" }, element("li", { class: "bad" }, item.error,
+    const box = element("ul", { class: "seen" }, element("li", { class: "bad" }, ...unbroken(item.error),
       code ? button(`What ${code[1]} means`, () => command([["explain", code[1]]], { keep: true })) : null));
     return element("article", {}, head, box, chosen(item, changed), item.kind === "log" ? readingOptions(item, changed) : null);
   }
@@ -112,9 +112,9 @@ function drawUses() {
   const there = USES.filter(one => one.fits(bench));
   byId("use").hidden = there.length === 0;
   if (there.length === 0) return;
-  if (!there.includes(use)) use = there[0];
+  if (!picked || !there.includes(use)) [use, picked] = [there[0], false];
   byId("uses").replaceChildren(...there.map(one => button(one.label, () => {
-    use = one;
+    [use, picked] = [one, true];
     drawUses();
   }, { "aria-pressed": String(one === use) })));
   drawOptions();
@@ -128,7 +128,7 @@ function drawOptions() {
 }
 
 function showCommand() {
-  byId("command").textContent = shellCommand(use.words(bench, use));
+  byId("command").replaceChildren(...unbroken(shellCommand(use.words(bench, use))));
 }
 
 function draw() {
@@ -138,7 +138,7 @@ function draw() {
 
 /** A report or a model that was dropped alone is shown. */
 function opened(item) {
-  use = USES.find(({ id }) => id === (item.kind === "model" ? "show" : "table"));
+  [use, picked] = [USES.find(({ id }) => id === (item.kind === "model" ? "show" : "table")), true];
   use.source = item.name;
   drawUses();
   return command([use.words(bench, use), ...(item.about ? [figureWords(bench, use.source)] : [])], { needed: 1 });
@@ -158,13 +158,13 @@ async function look(items) {
   draw();
   const [only] = bench.items.filter(({ kind }) => kind === "log");
   if (bench.logs.length === 1 && bench.items.filter(({ kind }) => kind === "log").length === 1 && only.recording.rate_hz) {
-    use = USES[0];
+    [use, picked] = [USES[0], false];
     drawUses();
     return run();
   }
   if (bench.logs.length === 0 && items.length === 1 && (items[0].kind === "report" || items[0].kind === "model")) return opened(items[0]);
   const failed = items.filter(item => item.error);
-  if (failed.length > 0 && failed.length === items.length) setState("error", failed.length === 1 ? failed[0].error : "None of these files could be read.");
+  if (failed.length > 0 && failed.length === items.length) setState("error", failed.length === 1 ? `${failed[0].name} could not be read.` : "None of these files could be read.");
   else setState("done", bench.logs.length > 0 || bench.items.some(({ recording }) => recording) ? "Read." : "Ready.");
 }
 
@@ -197,7 +197,7 @@ const worked = answer => answer.failed === undefined && ([0, 6].includes(answer.
  * `needed`: so many of them have to work. */
 async function command(jobs, { made = [], keep = false, said = jobs[0], needed = jobs.length } = {}) {
   if (!keep) showError("");
-  byId("command").textContent = shellCommand(said);
+  byId("command").replaceChildren(...unbroken(shellCommand(said)));
   let answers;
   try {
     answers = await Promise.all(jobs.map(words => start(words, "Working", made)));
@@ -208,7 +208,7 @@ async function command(jobs, { made = [], keep = false, said = jobs[0], needed =
   keepFiles(good.flatMap(({ files }) => files));
   if (good.length > 0) show(good);
   if (!keep) drawUses();
-  byId("command").textContent = shellCommand(said);
+  byId("command").replaceChildren(...unbroken(shellCommand(said)));
   if (bad.length > 0) {
     const texts = bad.map(failure), code = CODE.exec(texts[0]);
     showError(texts.join("\n"), code && code[1]);
