@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
+
 namespace libchar::detail {
 
 void FlagRuns::close(std::uint64_t length, double times) {
   if (length == 0) return;
   if (closed_.empty()) closed_.assign(kLongestCounted + 1, 0.0);
-  closed_[std::min<std::uint64_t>(length, kLongestCounted)] += times;
+  closed_[std::min(in_memory(length), kLongestCounted)] += times;
 }
 
 void FlagRuns::add_distance(std::uint64_t distance) {
