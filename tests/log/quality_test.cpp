@@ -147,7 +147,8 @@ TEST_CASE("short runs of one value are frozen stretches where values do not repe
 }
 
 TEST_CASE(
-    "zeros among values that hardly repeat are marks, or a dead band; those of a coarse sensor are "
+    "zeros among values that hardly repeat are marks, or a dead band, and those of a coarse sensor "
+    "are "
     "values") {
   const std::vector<double> x = gaussian(50000, 1);
   CHECK(meter(x).findings.empty());

@@ -111,7 +111,7 @@ std::string segment(const std::string& clock, const std::string& x0, const std::
 
 }  // namespace
 
-TEST_CASE("LabVIEW: time in one column, in equal ones, or in none; segments go on") {
+TEST_CASE("LabVIEW: time in one column, in equal ones, or in none, and segments go on") {
   const std::string two = "X_Value\tA\tB";
   const auto read = [](const std::string& text) {
     return read_recording(Written("a.lvm", text).path);
