@@ -403,7 +403,7 @@ def check_colours(browser, page):
         if (set.intervals) set.data.forEach((p, i) => { if (p.s || p.a.label === report.best) note(p.s ? p.s.name : report.best, set.pointBorderColor[i]); });
       }));
       return out;""")
-    expect(len(found) > 20, f"{page}: only {len(found)} lines with a name")
+    expect(len(found) > 12, f"{page}: only {len(found)} lines with a name")
     for name, inks in found.items():
         expect(len(set(inks)) == 1, f"{page}: {name} has the colours {sorted(set(inks))}")
     expect(sum(len(inks) > 2 for inks in found.values()) > 5, f"{page}: no line stands in several plots")

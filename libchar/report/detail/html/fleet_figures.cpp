@@ -377,12 +377,14 @@ void add_curve(const FleetReport& report,
   const bool strong = stands_out(*report.lot, recording, channel);
   const std::string device = report.records[recording].device + (strong ? " (stands out)" : "");
   const std::size_t known = figure.devices.size(), k = place_in(figure.devices, device);
+  const bool alone = report.recordings.size() == 1;  // then a colour a channel
   FigureSeries& curve =
       figure.curves.emplace_back(allan_series(result.allan,
-                                              k,
+                                              alone ? figure.curves.size() : k,
                                               result.channel.name + " · " + device,
                                               strong,
                                               unit ? unit->to_si / figure.to_si : 1));
+  if (alone) return;
   curve.look.dash += place_in(figure.channels, result.channel.name);
   curve.name = k == known ? device : "";
 }
