@@ -163,9 +163,9 @@ TEST_CASE("bench --stress: nothing wrong, all cells in the document") {
 
 TEST_CASE(
     "bench: --samples is heeded by the built-in signals, and refused where nothing has samples") {
-  const auto ran = test::run(bench_words({"--parts", "characterization"}));
+  const auto ran = test::run(bench_words({"--parts", "characterization", "--json"}));
   REQUIRE(ran.code == 0);
-  CHECK_THAT(ran.out, Contains("of 2048 samples at 200 Hz"));
+  CHECK_THAT(ran.out, Contains("\"samples\": 2048") && !Contains("\"samples\": 32768"));
   const auto refused = test::run({"bench", "--quick", "--parts", "fusion", "--samples", "2048"});
   CHECK(refused.code == 2);
   CHECK_THAT(refused.err, Contains("E0205") && Contains("--samples"));
