@@ -34,6 +34,11 @@ struct BenchSection {
 
 std::vector<BenchSection> bench_view(const BenchReport& report);
 
+namespace detail {
+/// A sentence a part: who is best.
+std::vector<std::string> bench_verdict(const BenchReport& report);
+}  // namespace detail
+
 /// "12.3 [11.9, 12.8]", without limits where they are not known, "–" where it was not measured.
 std::string figure_text(const Figure& figure, int digits = 3, double factor = 1);
 

@@ -166,10 +166,10 @@ std::vector<std::string> notes_on(const SensorModel& model) {
 
 }  // namespace
 
-std::vector<BenchSignal> bench_signals(bool quick) {
+std::vector<BenchSignal> bench_signals(std::uint64_t samples) {
   std::vector<BenchSignal> out;
   for (const NamedNoise& row : kSignals) {
-    BenchSignal signal{row.name, {}, row.rate_hz, quick ? 1U << 15U : 200000U};
+    BenchSignal signal{row.name, {}, row.rate_hz, samples};
     give(signal.model, Term::white, row.white);
     give(signal.model, Term::flicker, row.flicker);
     give(signal.model, Term::walk, row.walk);

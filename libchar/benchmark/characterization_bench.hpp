@@ -23,8 +23,8 @@ struct BenchSignal {
   std::uint64_t samples = 0;
 };
 
-/// Built in: the regimes that records are in. `quick`: shorter ones.
-std::vector<BenchSignal> bench_signals(bool quick);
+/// Built in: the regimes that records are in, each with so many samples.
+std::vector<BenchSignal> bench_signals(std::uint64_t samples);
 
 struct CharacterizationBenchOptions {
   std::size_t records = 40;

@@ -123,6 +123,7 @@ struct Characterization {
   std::optional<Stretch> still;      ///< where `still` was asked for
   std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
   std::vector<std::string> command;  ///< as typed
+  std::vector<std::string> next;     ///< commands to go on with: for the page
   std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample
   std::shared_ptr<const LimitReport> limits;             ///< when they were asked for (limits.hpp)
   WorkDone work{};                                       ///< that it took

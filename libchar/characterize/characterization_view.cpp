@@ -131,43 +131,13 @@ std::vector<TraceMark> trace_marks(const ChannelResult& channel, const std::stri
   return out;
 }
 
-std::string group_title(const std::string& unit) {
-  const auto known = find_unit(unit);
-  if (!known) return "";
-  switch (known->quantity) {
-    case Quantity::angular_rate:
-      return "Angular rate";
-    case Quantity::acceleration:
-      return "Acceleration";
-    case Quantity::magnetic_field:
-      return "Magnetic field";
-    case Quantity::pressure:
-      return "Pressure";
-    case Quantity::temperature:
-      return "Temperature";
-    case Quantity::voltage:
-      return "Voltage";
-    case Quantity::angle:
-      return "Angle";
-    case Quantity::time:
-      return "Time";
-    case Quantity::frequency:
-      return "Frequency";
-    case Quantity::concentration:
-      return "Concentration";
-    case Quantity::ratio:
-      return "Ratio";
-  }
-  return "";
-}
-
 std::vector<ChannelGroup> groups_of(const std::vector<ChannelView>& channels) {
   std::vector<ChannelGroup> out;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const std::string& unit = channels[i].unit;
     auto group =
         std::find_if(out.begin(), out.end(), [&](const ChannelGroup& g) { return g.unit == unit; });
-    if (group == out.end()) group = out.insert(out.end(), {group_title(unit), unit, {}});
+    if (group == out.end()) group = out.insert(out.end(), {detail::quantity_title(unit), unit, {}});
     group->channels.push_back(i);
   }
   return out;
@@ -233,6 +203,36 @@ void choose_details(std::vector<ChannelView>& channels) {
 }
 
 }  // namespace
+
+std::string detail::quantity_title(const std::string& unit) {
+  const auto known = find_unit(unit);
+  if (!known) return "";
+  switch (known->quantity) {
+    case Quantity::angular_rate:
+      return "Angular rate";
+    case Quantity::acceleration:
+      return "Acceleration";
+    case Quantity::magnetic_field:
+      return "Magnetic field";
+    case Quantity::pressure:
+      return "Pressure";
+    case Quantity::temperature:
+      return "Temperature";
+    case Quantity::voltage:
+      return "Voltage";
+    case Quantity::angle:
+      return "Angle";
+    case Quantity::time:
+      return "Time";
+    case Quantity::frequency:
+      return "Frequency";
+    case Quantity::concentration:
+      return "Concentration";
+    case Quantity::ratio:
+      return "Ratio";
+  }
+  return "";
+}
 
 CharacterizationView characterization_view(const Characterization& result) {
   CharacterizationView out;

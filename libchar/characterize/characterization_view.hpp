@@ -37,6 +37,11 @@ struct TraceMark {
   std::string label;            ///< "step 0.0031 deg/s"
 };
 
+/// "Angular rate" of "deg/s"; "" of a unit that is not known.
+namespace detail {
+std::string quantity_title(const std::string& unit);
+}
+
 /// Channels of one kind, which share a plot.
 struct ChannelGroup {
   std::string title;  ///< "Angular rate"

@@ -22,8 +22,6 @@ namespace libchar {
 
 namespace {
 
-constexpr double kChartAlarm = 0.01;
-
 constexpr double kValuesToAnySignal = 91.75;
 constexpr double kRangeDof = 0.62;
 
@@ -121,7 +119,7 @@ ZoneFindings zone_findings(std::span<const double> values, double centre, double
   furthest.p = either(furthest.p, p_of_furthest(values, centre, sigma));
   longest.p = either(longest.p, p_of_longest(values, centre));
   for (ZoneFinding& found : out.rule) {
-    found.alarm = found.signals > 0 && found.p < kChartAlarm / kZoneRules;
+    found.alarm = found.signals > 0 && found.p < detail::kChartAlarm / kZoneRules;
     out.alarm = out.alarm || found.alarm;
   }
   out.any_by_chance = -std::expm1(-n / kValuesToAnySignal);

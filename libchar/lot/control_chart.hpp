@@ -25,6 +25,10 @@ inline constexpr auto enum_table<ZoneRule> =
     enum_words<ZoneRule, "beyond_3_sigma two_of_three four_of_five eight_in_a_row">;
 inline constexpr std::size_t kZoneRules = enum_table<ZoneRule>.size();
 
+namespace detail {
+inline constexpr double kChartAlarm = 0.01;  ///< of a process that stays where it is
+}
+
 /// Signals that follow each other without a value between them are one.
 struct ZoneFinding {
   std::size_t signals = 0;

@@ -327,6 +327,30 @@ std::string outlying_sentence(const FleetLot& lot, const Fleet& fleet) {
   return axes ? " No channel stands out from its kind." : " No device stands out from its kind.";
 }
 
+/// The alarm of the control charts of all channels together: by the most improbable of their signals, which has the
+/// share of one chart and rule.
+std::string chart_sentence(const FleetLot& lot) {
+  const QuantityLot* worst = nullptr;
+  double p = 1;
+  std::size_t charts = 0;
+  for (const QuantityLot& q : lot.quantities) {
+    if (!q.chart) continue;
+    ++charts;
+    for (const ZoneFinding& found : q.chart->zones.rule)
+      if (found.signals > 0 && found.p < p) {
+        p = found.p;
+        worst = &q;
+      }
+  }
+  const double share =
+      detail::kChartAlarm / static_cast<double>(kZoneRules * std::max<std::size_t>(1, charts));
+  if (worst == nullptr || p >= share) return "";
+  return fmt::format(" Values change along the lot: {} of {} ({} by chance).",
+                     title_of(worst->quantity),
+                     worst->group,
+                     probability_text(p));
+}
+
 std::string fleet_verdict(const FleetLot& lot, const Fleet& fleet) {
   std::string out = plural(lot.devices, "device");
   if (lot.types.size() > 1) out += fmt::format(" of {} types", lot.types.size());
@@ -342,7 +366,7 @@ std::string fleet_verdict(const FleetLot& lot, const Fleet& fleet) {
                        lot.failing == 1 ? "fails one" : "fail one or more",
                        lot.open,
                        lot.keeping == 1 ? "1 keeps" : fmt::format("{} keep", lot.keeping));
-  return out + batch_sentence(lot);
+  return out + batch_sentence(lot) + chart_sentence(lot);
 }
 
 /// What was mended in the logs does not get lost in the number of them.

@@ -2,7 +2,7 @@
 (function () {
   "use strict";
 
-  const { report, colours, numberText, positive, padded, logAxis, whitePaper, options, start } = reportPage;
+  const { report, colours, numberText, positive, padded, logAxis, whitePaper, options, timeMarks, start } = reportPage;
   // Told apart by dash as well as by colour, for print.
   const TERMS = {
     white_noise: { name: "white noise N", series: 2, dash: [9, 4], mark: "rectRot" },
@@ -268,49 +268,6 @@
   }
 
   // ---- the record in time ----
-  // Marks of what was found, named in rows so that neighbours do not hide each other.
-  const found = (marks, scale) => ({
-    id: "found",
-    beforeDatasetsDraw(chart) {
-      const pen = chart.ctx, area = chart.chartArea, x = chart.scales.x;
-      marks.filter((m) => m.to_s > m.from_s && m.kind !== "ramp").forEach((m) => {
-        const left = x.getPixelForValue(m.from_s / scale), right = x.getPixelForValue(m.to_s / scale);
-        pen.save();
-        pen.fillStyle = m.kind === "missing" ? colours().missing : colours().moved;
-        pen.fillRect(left, area.top, Math.max(1.5, right - left), area.bottom - area.top);
-        pen.restore();
-      });
-    },
-    afterDatasetsDraw(chart) {
-      const pen = chart.ctx, area = chart.chartArea, x = chart.scales.x, rows = [];
-      pen.save();
-      pen.font = "600 11px system-ui, 'DejaVu Sans', sans-serif";
-      pen.textBaseline = "top";
-      marks.filter((m) => m.kind !== "missing").forEach((m) => {
-        const at = Math.max(area.left, Math.min(area.right, x.getPixelForValue(m.from_s / scale))), instant = m.to_s === m.from_s;
-        pen.strokeStyle = pen.fillStyle = colours().model;
-        if (instant) {
-          pen.lineWidth = 1.4;
-          pen.setLineDash([4, 3]);
-          pen.beginPath();
-          pen.moveTo(at, area.top);
-          pen.lineTo(at, area.bottom);
-          pen.stroke();
-          pen.setLineDash([]);
-        }
-        const width = pen.measureText(m.label).width, left = at + 4 + width > area.right ? at - 4 - width : at + 4;
-        let row = 0;
-        while (row < 4 && rows[row] && rows[row].some(([a, b]) => left < b && left + width > a)) ++row;
-        if (row === 4) return;
-        (rows[row] = rows[row] || []).push([left - 4, left + width + 4]);
-        pen.lineWidth = 3;
-        pen.strokeStyle = colours().halo;
-        pen.strokeText(m.label, left, area.top + 2 + 13 * row);
-        pen.fillText(m.label, left, area.top + 2 + 13 * row);
-      });
-      pen.restore();
-    },
-  });
   function missingMarks(t, seconds) {
     const out = [];
     t.missing.forEach(([block]) => {
@@ -320,7 +277,22 @@
     });
     return out;
   }
-  function traceChart(index, axis, unit) {
+  // Of the middles between least and largest, over a thirtieth of the record.
+  function runningMean(low, high) {
+    const half = Math.max(1, Math.round(low.length / 60));
+    return low.map((at, i) => {
+      let sum = 0, count = 0;
+      for (let k = Math.max(0, i - half); k <= Math.min(low.length - 1, i + half); ++k) if (low[k].y !== null) { sum += (low[k].y + high[k].y) / 2; ++count; }
+      return { x: at.x, y: at.y === null ? NaN : sum / count };
+    });
+  }
+  // A round step that has two lines at least between the ends.
+  function tickStep(low, high) {
+    const power = Math.pow(10, Math.floor(Math.log10((high - low) / 2)));
+    const lines = (step) => Math.floor(high / step + 1e-9) - Math.ceil(low / step - 1e-9) + 1;
+    return [5, 2, 1, 0.5, 0.2].map((f) => f * power).find((step) => lines(step) >= 2);
+  }
+  function traceChart(index, axis, unit, figure) {
     const t = report.trace.channels[index], c = colours(), rate = t.own_rate_hz || report.trace.rate_hz || 1, seconds = t.samples_per_block / rate, length = t.low.length * seconds;
     const [scale, word] = report.trace.rate_hz === null || !(report.trace.rate_hz > 0) ? [1, "sample"] : length > 172800 ? [86400, "time, d"] : length > 7200 ? [3600, "time, h"] : length > 600 ? [60, "time, min"] : [1, "time, s"];
     const one = t.samples_per_block === 1, middle = (i) => ((i + (one ? 0 : 0.5)) * seconds) / scale;
@@ -332,18 +304,26 @@
     const values = t.low.concat(t.high).filter((v) => v !== null), least = values.reduce((a, b) => Math.min(a, b), Infinity), most = values.reduce((a, b) => Math.max(a, b), -Infinity), pad = 0.08 * (most - least) || Math.abs(most) * 1e-3 || 1;
     const tip = (p) => [numberText(p.x, 5) + " " + (word.split(", ")[1] || ""), one ? numberText(p.y, 6) + " " + unit : numberText(t.low[p.i], 6) + " … " + numberText(t.high[p.i], 6) + " " + unit];
     const plain = { borderColor: c.measured, borderWidth: 1, pointRadius: 0, pointHoverRadius: 3, spanGaps: false, label: "" };
-    const sets = [Object.assign({ data: high, fill: one ? false : "+1", backgroundColor: c.measured, tip, pointHitRadius: 8 }, plain)];
-    if (!one) sets.push(Object.assign({ data: low, fill: false, pointHitRadius: 0 }, plain));
-    const straight = (title, extra) => Object.assign({ type: "linear", title: { display: Boolean(title), text: title, color: c.ink, font: { size: 12 } }, ticks: { color: c.ink, maxRotation: 0, maxTicksLimit: 8 }, grid: { color: c.fine, borderColor: c.border } }, extra);
-    const all = options(straight(word, { min: 0, max: length / scale, ticks: { color: c.ink, maxRotation: 0, maxTicksLimit: 8, includeBounds: false } }), straight(unit, { min: least - pad, max: most + pad, ticks: { color: c.ink, maxTicksLimit: 5, includeBounds: false } }));
+    const sets = [Object.assign({ data: high, fill: one ? false : "+1", backgroundColor: one ? "transparent" : c.measured, tip, pointHitRadius: 8, order: 3 }, plain)];
+    if (!one) sets.push(Object.assign({ data: low, fill: false, pointHitRadius: 0, order: 3 }, plain));
+    sets.push({ label: "", data: runningMean(low, high), borderColor: c.paper, borderWidth: 4, pointRadius: 0, pointHitRadius: 0, fill: false, spanGaps: false, order: 2 });
+    sets.push(Object.assign({}, sets[sets.length - 1], { borderColor: c.model, borderWidth: 1.8, order: 1 }));
+    const straight = (title, min, max, most, step) => ({ type: "linear", min, max, title: { display: Boolean(title), text: title, color: c.ink, font: { size: 12 } }, ticks: { color: c.ink, maxRotation: 0, maxTicksLimit: most, stepSize: step, includeBounds: false, callback: (v) => numberText(v, 5) }, grid: { color: c.fine, borderColor: c.border } });
+    const marks = t.marks.concat(missingMarks(t, seconds)).map((m) => ({
+      from: m.from_s / scale, to: m.to_s / scale, label: m.label, ink: c.model, shade: m.to_s === m.from_s || m.kind === "ramp" ? "" : m.kind === "missing" ? c.missing : c.moved,
+    })), end = length / scale, beside = timeMarks(marks, 0, end);
+    figure.style.setProperty("--marks", 13 * beside.rows(figure.clientWidth || 600) + "px");
+    figure.style.setProperty("--paper-marks", 13 * beside.rows(340) + "px");
+    const all = options(straight(word, 0, end, 8), straight(unit, least - pad, most + pad, 5, tickStep(least - pad, most + pad)));
     all.plugins.legend = { display: false };
+    all.layout = { padding: beside.padding };
     all.interaction = { mode: "nearest", axis: "x", intersect: false };
-    return { type: "line", data: { datasets: sets }, plugins: [found(t.marks.concat(missingMarks(t, seconds)), scale), whitePaper], options: all };
+    return { type: "line", data: { datasets: sets }, plugins: [beside.plugin, whitePaper], options: all };
   }
 
   const MAKERS = { allan: allanChart, group: groupChart, spectrum: spectrumChart, residuals: residualChart, trace: traceChart };
-  const ON_PAPER = { trace: [340, 66], residuals: [340, 150], group: [340, 222] };
+  const ON_PAPER = { residuals: [340, 150], group: [340, 222] };
 
   // What the reader has not unfolded is not printed.
-  start(MAKERS, (kind) => ON_PAPER[kind] || [340, 260], "details.on-paper:not([open])");
+  start(MAKERS, (kind, figure) => (kind === "trace" ? [340, 66 + parseInt(figure.style.getPropertyValue("--paper-marks"), 10)] : ON_PAPER[kind] || [340, 260]), "details.on-paper:not([open])");
 })();

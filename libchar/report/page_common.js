@@ -7,7 +7,7 @@ const reportPage = (function () {
   const report = JSON.parse(document.getElementById("report-data").textContent);
 
   // ---- colours ----
-  // Okabe and Ito's, which readers who confuse red and green tell apart too. A page whose root is "themed" has a second set for dark
+  // Okabe and Ito's, which readers who confuse red and green tell apart too. A second set is for dark
   // screens; paper is always white. `methods` and `sensors` were searched for the largest distance (Oklab) between any two of them and
   // from the ink under normal sight and with each kind of cone missing (tests/report/palette_test.py).
   const LIGHT = {
@@ -28,10 +28,9 @@ const reportPage = (function () {
     sensors: ["#7691cf", "#dac572", "#df9492", "#a3874a", "#70cbeb", "#9f544c", "#496c91"],
     known: "#3a4654", shade: "rgba(86,180,233,0.14)", grip: "rgba(140,200,242,0.22)",
   };
-  const themed = document.documentElement.classList.contains("themed"), darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
+  const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
   let onPaper = false;
-  const colours = () => (themed && darkScreen.matches && !onPaper ? DARK : LIGHT);
-  const INK = LIGHT.ink, DIM = LIGHT.dim, MEASURED = LIGHT.measured;
+  const colours = () => (darkScreen.matches && !onPaper ? DARK : LIGHT);
 
   // ---- numbers ----
   const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
@@ -41,7 +40,7 @@ const reportPage = (function () {
     if (value === 0) return "0";
     const [mantissa, exponent] = value.toExponential((digits || 4) - 1).split("e");
     const e = Number(exponent);
-    return e < -3 || e > 5 ? mantissa + "×10" + superscript(e) : Number(value.toPrecision(digits || 4)).toString();
+    return (e < -3 || e > 5 ? mantissa + "×10" + superscript(e) : Number(value.toPrecision(digits || 4)).toString()).replace("-", "−");
   }
   const isPowerOfTen = (v) => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
 
@@ -131,6 +130,73 @@ const reportPage = (function () {
         tooltip: {
           filter: (item) => Boolean(item.dataset.tip), displayColors: false, backgroundColor: "rgba(22,25,29,0.93)",
           callbacks: { title: () => "", label: (item) => item.dataset.tip(item.raw) },
+        },
+      },
+    };
+  }
+
+  // ---- marks along a time axis ----
+  // Shaded stretches, dashed lines at instants, and names in rows above the plot, where they hide nothing. A name is in a row above all that
+  // it would touch, and right ones are placed first: no line down to its mark crosses a name. Equal names that would touch are counted.
+  // `marks`: {from, to, label, ink, shade}, shade "" for an instant; between `min` and `max` of the axis.
+  const MARK_ROW = 13, MARK_ROWS = 7, MARK_FONT = "600 11px system-ui, 'DejaVu Sans', sans-serif", ruler = document.createElement("canvas").getContext("2d");
+  function timeMarks(marks, min, max) {
+    const all = marks.filter((m) => m.to >= min && m.from <= max);
+    const widthOf = (text) => { ruler.font = MARK_FONT; return ruler.measureText(text).width + 3; };
+    function named(left, right) {
+      const groups = [], placed = [], place = (t) => left + ((Math.max(min, t) - min) / (max - min)) * (right - left);
+      all.filter((m) => m.label).sort((a, b) => a.from - b.from).forEach((m) => {
+        const at = place(m.from), same = groups.find((g) => g.m.label === m.label && at - g.last < widthOf(m.label + " × 99") + 8);
+        if (same) Object.assign(same, { last: at, count: same.count + 1 });
+        else groups.push({ m, at, last: at, count: 1 });
+      });
+      groups.reverse().forEach(({ m, at, count }) => {
+        const text = count > 1 ? count + " × " + m.label : m.label, width = widthOf(text), begin = Math.max(left, Math.min(at, right - width)), end = begin + width;
+        const row = placed.reduce((most, p) => (p.begin < end + 8 && begin < p.end + 8 ? Math.max(most, p.row + 1) : most), 0);
+        if (row < MARK_ROWS && width <= right - left) placed.push({ text, at, begin, end, row, ink: m.ink });
+      });
+      return placed;
+    }
+    const rows = (width) => named(60, width - 10).reduce((most, p) => Math.max(most, p.row + 1), 0);
+    return {
+      rows, padding: (context) => ({ top: 2 + MARK_ROW * rows(context.chart.width) }),
+      plugin: {
+        id: "timeMarks",
+        beforeDatasetsDraw(chart) {
+          const pen = chart.ctx, area = chart.chartArea, x = (t) => Math.max(area.left, Math.min(area.right, chart.scales.x.getPixelForValue(t)));
+          pen.save();
+          all.filter((m) => m.shade).forEach((m) => {
+            pen.fillStyle = m.shade;
+            pen.fillRect(x(m.from), area.top, Math.max(1.5, x(m.to) - x(m.from)), area.bottom - area.top);
+          });
+          pen.restore();
+        },
+        afterDatasetsDraw(chart) {
+          const pen = chart.ctx, area = chart.chartArea, line = (at, from, to) => { pen.beginPath(); pen.moveTo(at, from); pen.lineTo(at, to); pen.stroke(); };
+          const placed = named(area.left, area.right).filter((p) => area.top - MARK_ROW * (p.row + 1) >= 0);
+          pen.save();
+          pen.font = MARK_FONT;
+          pen.textBaseline = "top";
+          pen.lineWidth = 1.4;
+          pen.setLineDash([4, 3]);
+          all.filter((m) => !m.shade && m.from >= min).forEach((m) => {
+            pen.strokeStyle = m.ink;
+            line(chart.scales.x.getPixelForValue(m.from), area.top, area.bottom);
+          });
+          pen.setLineDash([]);
+          pen.lineWidth = 1;
+          placed.forEach((p) => {
+            pen.strokeStyle = p.ink;
+            line(p.at, area.top - MARK_ROW * (p.row + 1) + 2, area.top);
+          });
+          pen.lineWidth = 3;
+          pen.strokeStyle = colours().halo;
+          placed.forEach((p) => {
+            pen.fillStyle = p.ink;
+            pen.strokeText(p.text, p.begin + 3, area.top - MARK_ROW * (p.row + 1));
+            pen.fillText(p.text, p.begin + 3, area.top - MARK_ROW * (p.row + 1));
+          });
+          pen.restore();
         },
       },
     };
@@ -273,7 +339,7 @@ const reportPage = (function () {
     // What is in view at the start is drawn at once, so that a page shown for a moment (or photographed) has its plots.
     figures.forEach((figure) => (!folded(figure) && figure.getBoundingClientRect().top < window.innerHeight + 300 ? draw(figure) : watch.observe(figure)));
     document.addEventListener("toggle", (event) => { if (event.target.open) event.target.querySelectorAll("figure.plot").forEach(draw); }, true);
-    darkScreen.addEventListener("change", () => { if (themed) redraw(); });
+    darkScreen.addEventListener("change", redraw);
 
     // A link to what is folded unfolds it.
     function unfold(hash) {
@@ -309,7 +375,7 @@ const reportPage = (function () {
       opened = Array.from(document.querySelectorAll(openOnPaper || "#provenance details:not([open])"));
       opened.forEach((details) => { details.open = true; });
       onPaper = true;
-      if (themed && darkScreen.matches) redraw();
+      if (darkScreen.matches) redraw();
       figures.forEach(draw);
       charts.forEach((chart, figure) => {
         const size = sizeOnPaper(figure.dataset.kind, figure);
@@ -320,7 +386,7 @@ const reportPage = (function () {
     window.addEventListener("afterprint", () => {
       onPaper = false;
       opened.forEach((details) => { details.open = false; });
-      if (themed && darkScreen.matches) redraw();
+      if (darkScreen.matches) redraw();
       charts.forEach((chart) => chart.resize());
     });
 
@@ -336,5 +402,5 @@ const reportPage = (function () {
     return { figures, charts };
   }
 
-  return { report, colours, INK, DIM, MEASURED, numberText, superscript, positive, padded, logAxis, whitePaper, legend, options, start };
+  return { report, colours, numberText, positive, padded, logAxis, whitePaper, legend, options, timeMarks, start };
 })();

@@ -4,7 +4,7 @@
 (function () {
   "use strict";
 
-  const { report, colours, numberText, positive, padded, logAxis, whitePaper, legend, options, start } = reportPage;
+  const { report, colours, numberText, positive, padded, logAxis, whitePaper, legend, options, timeMarks, start } = reportPage;
 
   // ---- who is who ----
   const score = (a) => (report.score === "rmse" ? a.rmse : a.without_reference && a.without_reference.predictive_rms);
@@ -20,7 +20,9 @@
   const DASHES = [[], [9, 4], [2, 3], [11, 3, 2, 3], [5, 2, 1, 2, 1, 2]];
   const MARKS = ["circle", "rect", "triangle", "rectRot", "star", "crossRot"];
   const style = (palette, k) => ({ colour: palette[k % palette.length], dash: DASHES[k % DASHES.length] });
-  const sensorStyle = (i) => style(colours().sensors, i);
+  // The best single sensor is drawn beside the best method: it has the colour that is least like that one's.
+  const named = (name) => report.sensors.findIndex((s) => s.name === name), UNLIKE = 1, bestSensor = report.run ? named(report.run.sensor) : -1;
+  const sensorStyle = (i) => style(colours().sensors, bestSensor < 0 ? i : i === bestSensor ? UNLIKE : i === UNLIKE ? bestSensor : i);
   const methodStyle = (k) => style(colours().methods, k);
   // Those that are drawn at first come first, so that their colours differ.
   const best = order.find((a) => a.label === report.best), free = order.find((a) => !a.bound && !a.description.learns_from_reference), plain = order.find((a) => a.name === "mean");
@@ -232,7 +234,7 @@
   let tracked = null;
   const flatWeights = (a) => a.weights !== null && a.weights.length > 0 && !Array.isArray(a.weights[0]);
   const trackable = order.filter((a) => flatWeights(a) || a.variances || a.watches_faults);
-  tracked = [(a) => a.label === report.best && a.weight_track, (a) => a.weight_track && a.watches_faults, (a) => a.weight_track || a.watches_faults, (a) => a.label === report.best, () => true]
+  tracked = [(a) => a.label === report.best && (a.weight_track || a.watches_faults), (a) => a.weight_track && a.watches_faults, (a) => a.weight_track || a.watches_faults, (a) => a.label === report.best, () => true]
     .map((wish) => trackable.find(wish)).find(Boolean) || null;
 
   // More lines than this cannot be told apart: those of the largest weights (smallest variances) are drawn, and the rest are counted.
@@ -440,47 +442,16 @@
   const trackOf = (part, one) => (one ? { time_s: part.time_s, low: one.low || one.value, high: one.high || one.value } : null);
   // Where the stretch is within a close-up, every instant is known.
   const partInView = () => run.close_ups.find((c) => c.from_s / TIME <= stretch[0] + 1e-9 * whole[1] && c.to_s / TIME >= stretch[1] - 1e-9 * whole[1]) || run;
-  const named = (name) => report.sensors.findIndex((s) => s.name === name);
-  // Known faults in the colour of their sensor, what is not scored in grey; names where there is room, in up to three lines.
-  const stretchMarks = {
-    id: "stretchMarks",
-    beforeDatasetsDraw(chart) {
-      const pen = chart.ctx, area = chart.chartArea, x = chart.scales.x, lines = [[], [], []];
-      pen.save();
-      pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
-      pen.textBaseline = "top";
-      report.marks.forEach((mark) => {
-        const from = Math.max(area.left, x.getPixelForValue(mark.from_s / TIME)), to = Math.min(area.right, x.getPixelForValue(mark.to_s / TIME));
-        if (!(to > area.left && from < area.right)) return;
-        const ink = mark.sensor === null ? colours().dim : sensorStyle(named(mark.sensor)).colour;
-        pen.fillStyle = mark.kind === "fault" ? rgba(ink, 0.16) : colours().outside;
-        pen.fillRect(from, area.top, Math.max(1, to - from), area.bottom - area.top);
-        pen.fillStyle = ink;
-        if (mark.kind === "fault" && from > area.left) pen.fillRect(from, area.top, 1.5, area.bottom - area.top);
-        const width = pen.measureText(mark.label).width, at = Math.min(from + 4, area.right - width - 2);
-        const line = lines.findIndex((boxes) => boxes.every(([a, b]) => at > b + 6 || at + width < a - 6));
-        if (line < 0 || width > area.right - area.left) return;
-        lines[line].push([at, at + width]);
-        chart.labelsOfMarks.push([mark.label, at, area.top + 3 + 13 * line, ink]);
-      });
-      pen.restore();
-    },
-    beforeDraw(chart) { chart.labelsOfMarks = []; },
-    afterDatasetsDraw(chart) {
-      const pen = chart.ctx;
-      pen.save();
-      pen.font = "11px system-ui, 'DejaVu Sans', sans-serif";
-      pen.textBaseline = "top";
-      pen.lineWidth = 3;
-      pen.strokeStyle = colours().halo;
-      chart.labelsOfMarks.forEach(([text, x, y, ink]) => {
-        pen.strokeText(text, x, y);
-        pen.fillStyle = ink;
-        pen.fillText(text, x, y);
-      });
-      pen.restore();
-    },
-  };
+  // Faults in the colour of their sensor, what is not scored in grey.
+  function runChart(sets, y, figure) {
+    const beside = timeMarks(report.marks.map((m) => {
+      const ink = m.sensor === null ? colours().dim : sensorStyle(named(m.sensor)).colour;
+      return { from: m.from_s / TIME, to: m.to_s / TIME, label: m.label, ink, shade: m.sensor === null ? colours().outside : rgba(ink, m.kind === "fault" ? 0.16 : 0.08) };
+    }), stretch[0], stretch[1]), all = chart(sets, timeAxis(), y, [beside.plugin, dragging]);
+    figure.style.setProperty("--marks", 13 * beside.rows(figure.clientWidth || 690) + "px");
+    all.options.layout = { padding: beside.padding };
+    return all;
+  }
   // From the smallest to the largest value within the stretch.
   function reach(track, series) {
     if (!track) return [Infinity, -Infinity];
@@ -501,40 +472,43 @@
     low = Math.max(Math.min(low, least), low - cap * height);
     high = Math.min(Math.max(high, most), high + cap * height);
     const rough = 1.17 * (high - low || height), step = roundStep(rough / 5);
-    return linearAxis(title, step * Math.floor((low - 0.05 * rough) / step), step * Math.ceil((high + 0.12 * rough) / step));
+    const axis = linearAxis(title, step * Math.floor((low - 0.05 * rough) / step), step * Math.ceil((high + 0.12 * rough) / step));
+    axis.ticks.stepSize = step;
+    return axis;
   }
-  // A stretch of many samples has no middle worth a line: its band alone is drawn, the first of `parts` on top.
+  // A stretch of many samples has no middle worth a line: its smallest and largest values are, the first of `parts` on top.
   function runSets(parts, u) {
     return parts.filter(([, track]) => track).flatMap(([name, track, look], order) => {
       const sets = bandLine(name, track, 0, look, false, timeTip(u)), single = sets[0].data.every((p) => p.low === p.high || isNaN(p.low));
-      sets[1].backgroundColor = rgba(look.colour, order ? 0.35 : 0.75);
+      sets[1].backgroundColor = rgba(look.colour, 0.13);
       sets[0].showLine = single;
+      if (!single) sets.slice(1).forEach((set) => Object.assign(set, { borderColor: look.colour, borderDash: look.dash, borderWidth: order ? 1.1 : 1.6 }));
       return sets.map((set) => Object.assign(set, { order: set.quiet ? 10 + order : order }));
     });
   }
   const sensorLook = () => Object.assign(sensorStyle(named(run.sensor)), { dash: [] });
   const methodLook = () => Object.assign(styleOf(labelled.get(run.method)), { dash: [] });
-  function signalChart(input, axis, u) {
+  function signalChart(input, axis, u, figure) {
     const part = partInView(), one = part.inputs[input], reference = trackOf(part, one.reference), estimate = trackOf(part, one.estimate), sensor = input === 0 ? trackOf(part, part.sensor_value) : null;
     const sets = runSets([
       ["fused by " + run.method, estimate, methodLook()],
       ["reference", reference, { colour: colours().ink, dash: [4, 3] }],
       [run.sensor + ", the best single sensor", sensor, sensor ? sensorLook() : null],
     ], u);
-    return chart(sets, timeAxis(), linearFor(withUnit(axis, u), [reference, estimate], [sensor], 0.5), [stretchMarks, dragging]);
+    return runChart(sets, linearFor(withUnit(axis, u), [reference, estimate], [sensor], 0.5), figure);
   }
-  function errorChart(input, axis, u) {
+  function errorChart(input, axis, u, figure) {
     const part = partInView(), error = trackOf(part, part.inputs[input].error), sensor = input === 0 ? trackOf(part, part.sensor_error) : null;
     const sets = runSets([
       ["error of " + run.method, error, methodLook()],
       ["error of " + run.sensor, sensor, sensor ? sensorLook() : null],
     ], u);
-    return chart(sets, timeAxis(), linearFor(withUnit(axis, u), [error], [sensor], 2), [stretchMarks, dragging]);
+    return runChart(sets, linearFor(withUnit(axis, u), [error], [sensor], 2), figure);
   }
-  function deviationsChart(index, axis, u) {
+  function deviationsChart(index, axis, u, figure) {
     const part = partInView(), track = trackOf(part.deviations, part.deviations), sets = [];
     drawnSensors(null, false).forEach((i) => sets.push(...bandLine(report.sensors[i].name, track, i, sensorStyle(i), false, timeTip(u))));
-    return chart(sets, timeAxis(), linearAxis(withUnit(axis, u), undefined, undefined), [stretchMarks, dragging]);
+    return runChart(sets, linearAxis(withUnit(axis, u), undefined, undefined), figure);
   }
 
   // ---- the ranking ----
@@ -580,7 +554,7 @@
       return { x: Math.min(score(a), FARTHEST * least), y, a, beyond, ci: beyond ? null : ci, equal: !a.bound && (a.as_good_as_best || a.label === report.best) };
     });
     const values = data.flatMap((p) => [p.x].concat(p.ci || [])).concat(optimum, sensor ? sensor.rmse : null), [low, high] = padded(values, 1);
-    const room = Math.max(1.01, Math.pow(high / low, 0.05)), inks = data.map((p) => styleOf(p.a).colour);
+    const room = Math.max(1.01, Math.pow(high / low, 0.05)), inks = data.map((p) => (p.a.label === report.best ? styleOf(p.a).colour : p.a.bound ? c.dim : c.ink));
     const tip = (p) => [p.a.label, scoreName + " " + numberText(score(p.a), 5) + " " + u].concat(p.ci ? ["95 %: " + numberText(p.ci[0], 5) + " … " + numberText(p.ci[1], 5)] : [], p.a.regret === null ? [] : [numberText(1 + p.a.regret, 5) + " × best possible"], p.a.ratio_to_best_ci95 ? ["× best method: " + numberText(p.a.ratio_to_best_ci95[0], 5) + " … " + numberText(p.a.ratio_to_best_ci95[1], 5)] : []);
     const upright = (label, x, colour, dash) => (positive(x) ? [{ label, data: [{ x, y: -0.5 }, { x, y: rows.length - 0.5 }], borderColor: colour, backgroundColor: colour, borderDash: dash, borderWidth: 1.6, pointRadius: 0, pointHitRadius: 4, fill: false, order: 5, tip: () => [label, numberText(x, 5) + " " + u] }] : []);
     const sets = [{

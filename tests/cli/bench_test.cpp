@@ -160,3 +160,13 @@ TEST_CASE("bench --stress: nothing wrong, all cells in the document") {
   CHECK(document["stress"]["cells"].size() > 1000);
   CHECK(document["scaling"].is_null());
 }
+
+TEST_CASE(
+    "bench: --samples is heeded by the built-in signals, and refused where nothing has samples") {
+  const auto ran = test::run(bench_words({"--parts", "characterization", "--json"}));
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("\"samples\": 2048") && !Contains("\"samples\": 32768"));
+  const auto refused = test::run({"bench", "--quick", "--parts", "fusion", "--samples", "2048"});
+  CHECK(refused.code == 2);
+  CHECK_THAT(refused.err, Contains("E0205") && Contains("--samples"));
+}

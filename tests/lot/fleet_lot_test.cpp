@@ -208,7 +208,9 @@ TEST_CASE("batches that differ are told apart, and their devices' spread is not 
   CHECK(b.batch_difference->between == Approx(std::log(1.3) / std::sqrt(2)).epsilon(0.25));
   CHECK(find(lot, "gyro_x", DeviceQuantity::random_walk).batch_difference->p > 1e-4);
   CHECK_THAT(lot.verdict,
-             Contains("in 2 batches") && Contains("Batches differ: Bias instability of"));
+             Contains("in 2 batches") && Contains("Batches differ: Bias instability of") &&
+                 Contains("Values change along the lot: Bias instability of gyro_"));
+  CHECK_THAT(fleet_lot(test::made_lot({}, 8)).verdict, !Contains("Values change"));
 }
 
 TEST_CASE("recordings of one device say how its bias repeats") {

@@ -53,7 +53,7 @@ TEST_CASE("replay view: marks are clipped to the run, and name what they mark") 
               {2, FaultKind::stuck, 0, 70, std::numeric_limits<double>::infinity()},
               {0, FaultKind::bias, 1, 90, 95}};
   const ReplayView view = replay_view(r);
-  REQUIRE(view.run.marks.size() == 4);
+  REQUIRE(view.run.marks.size() == 5);
   CHECK(view.run.marks[0].kind == "learning");
   CHECK(view.run.marks[0].from_s == 20);
   CHECK(view.run.marks[0].to_s == 30);
@@ -64,6 +64,8 @@ TEST_CASE("replay view: marks are clipped to the run, and name what they mark") 
   CHECK(view.run.marks[2].from_s == 20);
   CHECK(view.run.marks[3].label == "gyr_2: stuck");
   CHECK(view.run.marks[3].to_s == 80);
+  CHECK(view.run.marks[4].kind == "found");  // by the method that is drawn, and nobody declared it
+  CHECK_THAT(view.run.marks[4].label, Catch::EndsWith(" found"));
   CHECK(view.run.method == r.algorithms[*r.best].label);
   CHECK(view.run.sensor == "gyr_0");
 }

@@ -132,22 +132,28 @@ std::string mended_command(const Session& session,
   return flags.empty() ? "" : command_again(session, flags, folder);
 }
 
-std::string next_after(const Session& session,
-                       const Characterization& result,
-                       const std::string& folder) {
-  if (!(result.log.time.rate_hz > 0)) return command_again(session, " --rate RATE", folder);
-  if (const std::string mended = mended_command(session, findings_of(result), folder);
-      !mended.empty())
-    return mended;
+std::vector<std::string> next_steps(const Session& session,
+                                    const Characterization& result,
+                                    const std::string& folder) {
+  if (!(result.log.time.rate_hz > 0)) return {command_again(session, " --rate RATE", folder)};
+  const std::vector<Finding> findings = findings_of(result);
+  std::vector<std::string> out;
+  if (std::string mended = mended_command(session, findings, folder); !mended.empty())
+    out.push_back(std::move(mended));
   const auto usable =
       std::find_if(result.channels.begin(), result.channels.end(), [](const auto& c) {
         return c.fit && worst_of(judge(c).findings) != Severity::bad;
       });
-  if (usable == result.channels.end()) return "";
-  const std::string words = shell_word(folder);
-  if (exports_to(result, "kalibr")) return "sensorchar model " + words + " --to kalibr";
-  return "sensorchar plot " + words + alike_flag(result, usable->channel.unit) + " -o " +
-         shell_word(folder + ".svg");
+  if (usable != result.channels.end()) {
+    const std::string words = shell_word(folder);
+    if (exports_to(result, "kalibr")) out.push_back("sensorchar model " + words + " --to kalibr");
+    out.push_back("sensorchar plot " + words + alike_flag(result, usable->channel.unit) + " -o " +
+                  shell_word(folder + ".svg"));
+  }
+  const std::vector<Finding> worst = worst_first(findings);
+  if (!out.empty() && !worst.empty() && worst.front().severity != Severity::note)
+    out.push_back("sensorchar explain " + worst.front().code);
+  return out;
 }
 
 void say_next(const Session& session, const std::string& command) {

@@ -20,11 +20,11 @@ std::string mended_command(const Session& session,
                            const std::vector<libchar::Finding>& findings,
                            const std::string& folder);
 
-/// Of a characterization in a folder: the same command with what mends the worst that was found, else
-/// the file of an IMU for Kalibr, else a figure. "" where nothing could be fitted.
-std::string next_after(const Session& session,
-                       const libchar::Characterization& result,
-                       const std::string& folder);
+/// Of a characterization in a folder, the most useful first: the same command with what mends the worst that was
+/// found, the file of an IMU for Kalibr, a figure, what the worst finding means.
+std::vector<std::string> next_steps(const Session& session,
+                                    const libchar::Characterization& result,
+                                    const std::string& folder);
 
 /// The line that says so; nothing when quiet, or for "".
 void say_next(const Session& session, const std::string& command);

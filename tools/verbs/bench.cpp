@@ -84,6 +84,7 @@ std::vector<PartOption> part_options(const BenchVerb& verb) {
           {"--algorithms", !verb.algorithms.empty(), {"fusion"}},
           {"--runs", verb.runs != 0, {"fusion"}},
           {"--methods", !verb.methods.empty(), {"characterization"}},
+          {"--samples", verb.samples != 0, {"characterization", "design"}},
           {"--records", verb.records != 0, {"characterization", "design"}},
           {"--target", verb.target.has_value(), {"design"}},
           {"--at", verb.tau_s.has_value(), {"design"}},
@@ -120,7 +121,7 @@ BenchInputs inputs_of(Session& session, BenchVerb& verb) {
     add_bench_input(file, verb.inputs, out, session.terminal);
   if (!verb.files.empty()) return out;
   if (verb.wants("characterization") || verb.wants("design"))
-    out.signals = bench_signals(verb.quick);
+    out.signals = bench_signals(verb.inputs.most_samples);
   if (verb.wants("fusion")) out.scenes = bench_scenes();
   return out;
 }

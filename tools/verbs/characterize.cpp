@@ -137,10 +137,11 @@ void run_one_by_one(Session& session,
   std::set<std::string> taken;
   Json documents = Json::array();
   for (const std::string& log : verb.logs) {
-    const Characterization result = characterized(session, verb, options, limits, log, outcome);
-    const CharacterizationView view = characterization_view(result);
+    Characterization result = characterized(session, verb, options, limits, log, outcome);
     refuse_strict(session);
     const fs::path folder = folder_for(verb, log, taken);
+    if (verb.logs.size() == 1) result.next = next_steps(session, result, folder.string());
+    const CharacterizationView view = characterization_view(result);
     const std::vector<OutputFile> outputs = report_files(view, folder);
     const auto removed = write_outputs(outputs, folder, inputs_of(verb), verb.force);
     session.wrote = true;
@@ -150,7 +151,7 @@ void run_one_by_one(Session& session,
     }
     print_beside(session, characterization_text(view, text_look()));
     say_written(session, paths_of(outputs), removed);
-    if (verb.logs.size() == 1) say_next(session, next_after(session, result, folder.string()));
+    if (!result.next.empty()) say_next(session, result.next.front());
   }
   if (!verb.json && verb.logs.size() > 1)
     say_next(session, "sensorchar characterize " + shell_words(verb.logs) + " --lot -o lot-report");

@@ -61,6 +61,13 @@ const ShownValue& headline(const TermCells& cells) {
   return own_word ? cells.field.front() : cells.own;
 }
 
+HabitualValue detail::headline_unit(Term term, const std::string& unit) {
+  const std::string_view key = kTermNames[static_cast<std::size_t>(term)].key;
+  const auto habits = habitual_units(key, unit);
+  if (!habits.empty() && habits.front().reading == Reading::plain) return habits.front();
+  return {1, shown_term_unit(key, unit), {}, Reading::plain};
+}
+
 std::string unit_with_reading(const ShownValue& shown) {
   const std::string unit = shown.unit == "1" ? "" : shown.unit;  // a ratio
   if (shown.reading == Reading::plain) return unit;

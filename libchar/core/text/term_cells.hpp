@@ -45,6 +45,11 @@ ShownValue shown_value(const Coefficient& coefficient, double factor, std::strin
 /// In the field's unit where it has a word of its own for the term, else in the channel's.
 const ShownValue& headline(const TermCells& cells);
 
+namespace detail {
+/// The unit of that headline, and what a coefficient in the channel's own unit is multiplied by.
+HabitualValue headline_unit(Term term, const std::string& unit);
+}  // namespace detail
+
 /// "deg/s/√Hz one-sided", "deg/h floor".
 std::string unit_with_reading(const ShownValue& shown);
 /// "0.3403 deg/s/√Hz one-sided", of all in a row.

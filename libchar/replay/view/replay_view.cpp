@@ -194,6 +194,25 @@ std::string fault_label(const ReplayResult& r, const SensorFault& fault) {
          std::string(name_of(fault.kind)) + (valueless ? "" : " " + brief_text(fault.value, 4));
 }
 
+/// What a method found and nobody declared, as long as there are few.
+void add_found(std::vector<RunMark>& out,
+               const ReplayResult& r,
+               const FoundFault& found,
+               double end_s) {
+  constexpr std::size_t kMostMarks = 24;
+  if (found.sensor >= r.sensors.size() || out.size() >= kMostMarks) return;
+  const std::string& name = r.sensors[found.sensor].name;
+  const double to_s = found.to_s.value_or(end_s);
+  const bool declared = std::any_of(out.begin(), out.end(), [&](const RunMark& mark) {
+    return mark.sensor == name && mark.from_s < to_s && found.from_s < mark.to_s;
+  });
+  if (declared) return;
+  std::string kind = found.kind;
+  std::replace(kind.begin(), kind.end(), '_', ' ');
+  add_mark(
+      out, {"found", name + ": " + kind + " found", name, found.from_s, to_s}, r.start_s, end_s);
+}
+
 std::vector<RunMark> marks_of(const ReplayResult& r, double end_s) {
   std::vector<RunMark> out;
   if (r.learning)
@@ -212,6 +231,9 @@ std::vector<RunMark> marks_of(const ReplayResult& r, double end_s) {
               fault.to_s},
              r.start_s,
              end_s);
+  if (r.tracks.algorithm)
+    for (const FoundFault& found : r.algorithms[*r.tracks.algorithm].faults)
+      add_found(out, r, found, end_s);
   return out;
 }
 

@@ -30,9 +30,9 @@ struct AlgorithmView {
 
 /// A stretch of the run that plots over time mark, clipped to it.
 struct RunMark {
-  std::string kind;    ///< "fault", "warm-up", "learning"
+  std::string kind;    ///< "fault", "found" (and not declared), "warm-up", "learning"
   std::string label;   ///< "gyro2: scale 0.8"
-  std::string sensor;  ///< of a fault
+  std::string sensor;  ///< of a fault, declared or found
   double from_s = 0, to_s = 0;
 };
 

@@ -16,8 +16,10 @@
 namespace libchar {
 namespace {
 
-std::string section_html(const BenchSection& section) {
-  std::string out = "<section class=\"channel\">\n<h2>" + html_text(section.title) + "</h2>\n";
+std::string section_html(const BenchSection& section, std::size_t number) {
+  std::string out = fmt::format("<section class=\"channel\" id=\"part-{}\">\n<h2>{}</h2>\n",
+                                number,
+                                html_text(section.title));
   for (const std::string& sentence : section.sentences)
     out += "<p>" + html_text(sentence) + "</p>\n";
   for (const BenchChart& chart : section.charts) out += points_figure(chart, section.title);
@@ -31,6 +33,9 @@ std::string section_html(const BenchSection& section) {
 
 std::string bench_text(const BenchReport& report) {
   std::string out;
+  for (const std::string& sentence : detail::bench_verdict(report))
+    out += printable(sentence) + "\n";
+  if (!out.empty()) out += "\n";
   for (const BenchSection& section : bench_view(report)) {
     out += printable(section.title) + "\n";
     for (const std::string& sentence : section.sentences) out += "  " + printable(sentence) + "\n";
@@ -41,7 +46,9 @@ std::string bench_text(const BenchReport& report) {
 }
 
 std::string bench_markdown(const BenchReport& report) {
-  std::string out = "# Benchmarks\n";
+  std::string out = "# Benchmarks\n\n";
+  for (const std::string& sentence : detail::bench_verdict(report))
+    out += markdown_text(sentence) + "\n";
   for (const BenchSection& section : bench_view(report)) {
     out += "\n## " + markdown_text(section.title) + "\n\n";
     for (const std::string& sentence : section.sentences) out += markdown_text(sentence) + "\n";
@@ -53,8 +60,16 @@ std::string bench_markdown(const BenchReport& report) {
 }
 
 std::string bench_html(const BenchReport& report) {
-  std::string body;
-  for (const BenchSection& section : bench_view(report)) body += section_html(section);
+  const std::vector<BenchSection> sections = bench_view(report);
+  std::string body = "<div class=\"verdict\">\n", contents, parts;
+  for (const std::string& sentence : detail::bench_verdict(report))
+    body += "<p>" + html_text(sentence) + "</p>\n";
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    contents +=
+        fmt::format("<li><a href=\"#part-{}\">{}</a></li>\n", i + 1, html_text(sections[i].title));
+    parts += section_html(sections[i], i + 1);
+  }
+  body += "</div>\n<ul class=\"contents\">\n" + contents + "</ul>\n" + parts;
   body += "<section class=\"channel\">\n<h2>Provenance</h2>\n<p><code>" +
           html_text(command_line(report.command)) + "</code></p>\n</section>\n";
   return html_page({"Benchmarks",

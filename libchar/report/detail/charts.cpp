@@ -73,7 +73,7 @@ FigureSeries allan_series(
 std::string curves_figure(std::vector<FigureSeries> curves,
                           const std::string& y_title,
                           const std::string& about) {
-  constexpr std::size_t kMostNamed = 12;
+  constexpr std::size_t kMostNamed = 16;
   LogExtent x, y;
   for (const FigureSeries& c : curves)
     for (std::size_t i = 0; i < c.x.size(); ++i) {
@@ -82,9 +82,12 @@ std::string curves_figure(std::vector<FigureSeries> curves,
       y.take(c.y[i]);
     }
   if (x.high == 0 || y.high == 0) return "";
-  for (std::size_t k = kMostNamed; k < curves.size(); ++k) curves[k].name.clear();
-  const std::string more =
-      curves.size() > kMostNamed ? fmt::format("And {} more.", curves.size() - kMostNamed) : "";
+  std::size_t named = 0, more = 0;
+  for (FigureSeries& c : curves)
+    if (!c.name.empty() && ++named > kMostNamed && c.look.width < 2) {
+      c.name.clear();
+      ++more;
+    }
   std::stable_partition(
       curves.begin(), curves.end(), [](const FigureSeries& c) { return c.look.width < 2; });
   Chart chart;
@@ -92,7 +95,7 @@ std::string curves_figure(std::vector<FigureSeries> curves,
   chart.x = x.axis("averaging time τ, s");
   chart.y = y.axis(y_title);
   chart.series = std::move(curves);
-  return drawn(chart, kWide, more);
+  return drawn(chart, kWide, more > 0 ? fmt::format("{} more have no name here.", more) : "");
 }
 
 namespace {

@@ -105,7 +105,7 @@ std::string quantities_part(const FleetLot& lot) {
   const bool has_kinds = !kinds.rows.empty();
   std::string out = "<h2>What the devices have in common</h2>\n";
   if (has_kinds || !channels.rows.empty()) out += html_table(has_kinds ? kinds : channels, kLook);
-  if (has_kinds) out += folded("Channel by channel", html_table(channels, kLook));
+  if (has_kinds) out += folded("The same of each channel", html_table(channels, kLook));
   return out +
          "<p class=\"note\">Means of coefficients are geometric. Spread: from device to device, "
          "what the uncertainty of each "
@@ -157,10 +157,24 @@ bool has_several_recordings(const FleetLot& lot) {
   return lot.order.size() > lot.devices;
 }
 
+bool says_anything(const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [](const auto& word) { return !word.empty(); });
+}
+
+bool anything_is_the_matter(const FleetLot& lot) {
+  const auto any = [](const std::vector<bool>& of) {
+    return std::find(of.begin(), of.end(), true) != of.end();
+  };
+  return any(lot.stands_out) || any(lot.fails) || !lot.failed.empty() || !lot.awaited.empty();
+}
+
 std::string devices_part(const FleetLot& lot) {
-  Table devices("device|type|batch|what is the matter");
-  if (has_several_recordings(lot))
-    devices.columns.insert(devices.columns.begin() + 1, {"recording"});
+  Table devices("device");
+  for (const auto& [head, shown] : {std::pair("recording", has_several_recordings(lot)),
+                                    std::pair("type", says_anything(lot.types)),
+                                    std::pair("batch", says_anything(lot.batches)),
+                                    std::pair("what is the matter", anything_is_the_matter(lot))})
+    if (shown) devices.columns.push_back({head});
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
          "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, "
          "batch\"></label>\n"
@@ -241,7 +255,7 @@ Table all_channels(const FleetReport& report) {
 std::string channels_part(const FleetReport& report) {
   const Table channels = all_channels(report);
   return channels.rows.empty() ? ""
-                               : "<section class=\"channel\">\n<h2>Channel by channel</h2>\n" +
+                               : "<section class=\"channel\">\n<h2>Each device</h2>\n" +
                                      html_table(channels, {.css = "many"}) + "</section>\n";
 }
 

@@ -312,6 +312,26 @@ std::string channel_link(const ChannelView& c, std::size_t i) {
                      : "<b>" + name + "</b>";
 }
 
+/// The rating, and a chip a finding.
+Cell verdict_cell(const Judgement& judgement) {
+  constexpr std::size_t kMost = 4;
+  Cell out =
+      Cell::word(fmt::format("{} {}", rating_sign(judgement.rating), rating_word(judgement.rating)),
+                 tint_of(judgement.rating));
+  std::vector<Cell::Mark> chips;
+  for (const Finding& one : judgement.findings) {
+    const FindingKind* kind = find_finding_kind(one.code);
+    if (kind == nullptr || one.severity == Severity::note) continue;
+    chips.push_back(
+        {std::string(kind->title), one.severity == Severity::bad ? Tint::bad : Tint::doubtful});
+  }
+  const std::size_t more = chips.size() > kMost ? chips.size() - kMost : 0;
+  chips.resize(chips.size() - more);
+  if (more > 0) chips.push_back({fmt::format("{} more", more)});
+  out.marks = std::move(chips);
+  return out;
+}
+
 void add_channel(Table& table, const ChannelView& view, std::size_t index, double rate_hz) {
   const ChannelResult& c = *view.result;
   Cell name(c.channel.name);
@@ -328,9 +348,7 @@ void add_channel(Table& table, const ChannelView& view, std::size_t index, doubl
   const bool white = c.fit && (*c.fit)[Term::white].value;
   row.emplace_back(white ? value_text((*c.fit)[Term::white], std::sqrt(rate_hz)) : "–");
   row.emplace_back(c.fit ? probability_text(c.fit->goodness.p) : "no fit");
-  const Rating rating = view.judgement.rating;
-  row.push_back(
-      Cell::word(fmt::format("{} {}", rating_sign(rating), rating_word(rating)), tint_of(rating)));
+  row.push_back(verdict_cell(view.judgement));
   table.add(std::move(row));
 }
 
@@ -412,6 +430,13 @@ Json of_details(const CharacterizationView& view, Json document) {
 
 constexpr std::size_t kUnfoldedRows = 12;
 
+/// Commands to go on with.
+std::string next_part(const std::vector<std::string>& commands) {
+  std::string out;
+  for (const std::string& command : commands) out += html_text(command) + "\n";
+  return out.empty() ? "" : "<h3>What next</h3>\n<pre class=\"next\">" + out + "</pre>\n";
+}
+
 std::string overview(const CharacterizationView& view) {
   std::string out = fmt::format("<section id=\"overview\">\n<p class=\"verdict {}\">{} ",
                                 name_of(view.rating),
@@ -421,7 +446,7 @@ std::string overview(const CharacterizationView& view) {
   out += folded("All coefficients in a table",
                 overview_table(view),
                 view.channels.size() > 1 && view.channels.size() <= kUnfoldedRows);
-  return out + "</section>\n";
+  return out + next_part(view.result->next) + "</section>\n";
 }
 
 std::string time_base(const LogInfo& log) {
@@ -484,7 +509,6 @@ std::string html_report(const CharacterizationView& view, const Json& without_ti
        result.log.file,
        std::string(page_js()),
        std::string(page_css()),
-       true,
        all_in_detail(view)},
       body,
       json_in_script(all_in_detail(view) ? without_times : of_details(view, without_times)));

@@ -35,18 +35,21 @@ std::string joined_sentences(const std::string& a, const std::string& b) {
 }
 
 std::string marked_text(const ReplayView& view) {
-  bool fault = false;
+  bool fault = false, found = false;
   std::string out;
   for (const RunMark& mark : view.run.marks) {
-    if (mark.kind == "fault")
-      fault = true;
-    else
+    fault |= mark.kind == "fault";
+    found |= mark.kind == "found";
+    if (mark.sensor.empty())
       out = joined_sentences(out,
                              fmt::format("Grey: {} ({} … {}).",
                                          mark.label,
                                          duration_text(mark.from_s),
                                          duration_text(mark.to_s)));
   }
+  if (found)
+    out = joined_sentences(
+        fmt::format("Pale stretches: what {} found, and nobody declared.", view.run.method), out);
   return joined_sentences(fault ? "Coloured stretches: faults as the scene tells them." : "", out);
 }
 
@@ -344,13 +347,21 @@ std::string shown(const Table& table, const PageTable& look = {}) {
   return table.rows.empty() ? "" : html_table(table, look);
 }
 
+std::string skipped_part(const ReplayView& view) {
+  std::size_t methods = 0;
+  for (const SkippedAlgorithms& one : view.skipped) methods += one.labels.size();
+  return methods == 0 ? ""
+                      : folded("Skipped: " + plural(methods, "method"),
+                               bullet_list(skipped_words(view), "plain skipped"));
+}
+
 std::string ranking_section(const ReplayView& view) {
   constexpr PageTable kLook{.css = "ranking", .sorted = true};
   std::string inputs;
   for (const Table& table : input_tables(view)) inputs += html_table(table, kLook);
   return "<section class=\"part\" id=\"ranking\">\n<h2>Ranking</h2>\n" + ranking_figure(view) +
-         headed_list("Skipped", skipped_words(view), "plain skipped") +
-         html_table(algorithms_table(view), kLook) + scores_note(view) + inputs + "</section>\n";
+         html_table(algorithms_table(view), kLook) + scores_note(view) + inputs +
+         skipped_part(view) + "</section>\n";
 }
 
 std::string needs(const ReplayView& view) {
@@ -426,8 +437,7 @@ std::string replay_html(const ReplayView& view) {
   return html_page({"Sensor fusion",
                     view.title,
                     std::string(replay_page_js()),
-                    std::string(page_css()) + std::string(replay_page_css()),
-                    true},
+                    std::string(page_css()) + std::string(replay_page_css())},
                    overview(view) + run_section(view) + ranking_section(view) + faults(view) +
                        time_section(view) + weights(view) + alignment_html(view) + sensors(view) +
                        cost_section(view) + needs(view) + provenance(view),

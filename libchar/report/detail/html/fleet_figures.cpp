@@ -1,10 +1,12 @@
 #include "libchar/report/detail/html/fleet_figures.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/limits.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
@@ -95,6 +97,52 @@ std::string limit_cell(const QuantityLot& q) {
                      count_text(c.fail),
                      count_text(c.not_decided),
                      ppk_text(c));
+}
+
+void scale(LotFigures& f, double factor, bool logarithm) {
+  f.mean *= factor;
+  f.mean_ci95 = {f.mean_ci95.low * factor, f.mean_ci95.high * factor};
+  if (logarithm) return;
+  f.spread *= factor;
+  f.spread_ci95 = {f.spread_ci95.low * factor, f.spread_ci95.high * factor};
+}
+
+void scale_logarithms(QuantityLot& q, double shift) {
+  if (q.effects) q.effects->mean += shift;
+  q.histogram.low += shift;
+  if (!q.chart) return;
+  q.chart->centre += shift;
+  q.chart->limits = {q.chart->limits.low + shift, q.chart->limits.high + shift};
+  for (ChartPoint& p : q.chart->points)
+    for (double* one : {&p.mean, &p.low, &p.high}) *one += shift;
+  for (ChartValue& v : q.chart->beyond) v.value += shift;
+}
+
+/// A noise term in the field's unit, where that has a word of its own for it (headline).
+QuantityLot in_field_unit(QuantityLot q) {
+  const auto term = term_of(q.quantity);
+  if (!term || !in_logarithm(q.quantity)) return q;
+  const auto [factor, symbol, name, reading] = detail::headline_unit(*term, q.channel_unit);
+  if (factor == 1) return q;
+  q.unit = symbol;
+  if (q.figures) scale(*q.figures, factor, true);
+  for (BatchLot& batch : q.batches) {
+    if (batch.figures) scale(*batch.figures, factor, true);
+    batch.median *= factor;
+  }
+  if (q.arithmetic) {
+    LotFigures all{
+        q.arithmetic->mean, q.arithmetic->mean_ci95, q.arithmetic->sd, q.arithmetic->sd_ci95};
+    scale(all, factor, false);
+    q.arithmetic = ArithmeticFigures{all.mean, all.mean_ci95, all.spread, all.spread_ci95};
+  }
+  for (double& quantile : q.quantiles) quantile *= factor;
+  if (q.left_out)
+    q.left_out->mean_ci95 = {q.left_out->mean_ci95.low * factor,
+                             q.left_out->mean_ci95.high * factor};
+  if (q.capability) q.capability->most *= factor;
+  scale_logarithms(q, std::log(factor));
+  return q;
 }
 
 LotAxis axis_of(const QuantityLot& q) {
@@ -279,17 +327,24 @@ std::string sentences(const QuantityLot& q) {
   return bullet_list(out, "facts");
 }
 
-/// Curves of one quantity, in the unit of the first.
+/// Curves of one quantity, in the unit of the first: a colour a device, a dash a channel.
 struct AllanFigure {
   std::string measures, unit, deviation;
   double to_si = 1;
   std::vector<FigureSeries> curves;
+  std::vector<std::string> devices, channels;
 };
+
+std::size_t place_in(std::vector<std::string>& names, const std::string& name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) names.push_back(name);
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
 
 AllanFigure& figure_of(const Channel& channel,
                        const std::optional<Unit>& unit,
                        std::vector<AllanFigure>& figures) {
-  const std::string measures = unit                   ? std::string(name_of(unit->quantity))
+  const std::string measures = unit                   ? detail::quantity_title(channel.unit)
                                : channel.unit.empty() ? "no unit"
                                                       : "in " + channel.unit;
   const auto at = std::find_if(
@@ -299,6 +354,8 @@ AllanFigure& figure_of(const Channel& channel,
                                           unit ? unit->symbol : channel_unit_text(channel.unit),
                                           "",
                                           unit ? unit->to_si : 1,
+                                          {},
+                                          {},
                                           {}});
 }
 
@@ -318,13 +375,18 @@ void add_curve(const FleetReport& report,
   AllanFigure& figure = figure_of(result.channel, unit, figures);
   figure.deviation = name_of(result.allan.type);
   const bool strong = stands_out(*report.lot, recording, channel);
-  figure.curves.push_back(allan_series(result.allan,
-                                       figure.curves.size(),
-                                       result.channel.name + " · " +
-                                           report.records[recording].device +
-                                           (strong ? " (stands out)" : ""),
-                                       strong,
-                                       unit ? unit->to_si / figure.to_si : 1));
+  const std::string device = report.records[recording].device + (strong ? " (stands out)" : "");
+  const std::size_t known = figure.devices.size(), k = place_in(figure.devices, device);
+  const bool alone = report.recordings.size() == 1;  // then a colour a channel
+  FigureSeries& curve =
+      figure.curves.emplace_back(allan_series(result.allan,
+                                              alone ? figure.curves.size() : k,
+                                              result.channel.name + " · " + device,
+                                              strong,
+                                              unit ? unit->to_si / figure.to_si : 1));
+  if (alone) return;
+  curve.look.dash += place_in(figure.channels, result.channel.name);
+  curve.name = k == known ? device : "";
 }
 
 }  // namespace
@@ -334,7 +396,9 @@ std::string celsius_text(double t) {
 }
 
 std::string group_title(const QuantityLot& q, const FleetLot& lot) {
-  return lot.types.size() < 2 ? q.group : q.group + " of " + (q.type.empty() ? "no type" : q.type);
+  const std::string kind = q.of_kind ? detail::quantity_title(q.channel_unit) : "";
+  const std::string group = kind.empty() ? q.group : kind + ", " + shown_unit(q.channel_unit);
+  return lot.types.size() < 2 ? group : group + " of " + (q.type.empty() ? "no type" : q.type);
 }
 
 /// Where the middle 95 % lie; of one device, its value.
@@ -347,8 +411,9 @@ std::string devices_text(const QuantityLot& q) {
 
 Table quantities_table(const FleetLot& lot, std::optional<bool> of_kind) {
   Table out("group|what|mean|spread (sd)|95 % of devices|counted|not counted|batches alike|limit");
-  for (const QuantityLot& q : lot.quantities) {
-    if (of_kind && q.of_kind != *of_kind) continue;
+  for (const QuantityLot& own : lot.quantities) {
+    if (of_kind && own.of_kind != *of_kind) continue;
+    const QuantityLot q = in_field_unit(own);
     const auto spread = [&](const LotFigures& f) {
       return spread_text(f.spread, f.spread_ci95, in_logarithm(q.quantity), q.unit);
     };
@@ -374,14 +439,19 @@ std::string allan_figures(const FleetReport& report) {
   for (const AllanFigure& f : figures) {
     const std::string drawing = curves_figure(
         f.curves, f.deviation + ", " + f.unit, "Allan curves of all channels, " + f.measures);
-    if (!drawing.empty()) out += "<h3>" + html_text(f.measures) + "</h3>\n" + drawing;
+    if (drawing.empty()) continue;
+    out += "<h3>" + html_text(f.measures) + "</h3>\n" + drawing;
+    if (f.channels.size() > 1)
+      out += "<p class=\"note\">A colour for each device, solid and dashed for its channels: " +
+             html_text(fmt::format("{}", fmt::join(f.channels, ", "))) + ".</p>\n";
   }
   return out;
 }
 
-std::string quantity_figures(const FleetReport& report, const QuantityLot& q) {
+std::string quantity_figures(const FleetReport& report, const QuantityLot& own) {
   constexpr std::size_t kFewestDrawn = 4;  // fewer stand in the table, and have no distribution
-  if (q.counts.counted < kFewestDrawn) return "";
+  if (own.counts.counted < kFewestDrawn) return "";
+  const QuantityLot q = in_field_unit(own);
   const std::string title = title_of(q.quantity) + " of " + group_title(q, *report.lot);
   std::string out = "<h3>" + html_text(title) + "</h3>\n<div class=\"plots\">\n" +
                     histogram_figure(q.histogram, axis_of(q), "Histogram: " + title);

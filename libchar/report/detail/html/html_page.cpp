@@ -49,7 +49,7 @@ std::string head(const PageParts& parts, const std::string& script) {
       policy_hash(script),
       policy_hash(parts.style));
   return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"{}>\n<head>\n<meta charset=\"utf-8\">\n"
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
       "name=\"referrer\" content=\"no-referrer\">\n"
@@ -58,7 +58,6 @@ std::string head(const PageParts& parts, const std::string& script) {
       "<!--\nThe plots of this page are drawn by Chart.js, (c) Chart.js Contributors, and "
       "@kurkle/color bundled in it, (c) Jukka Kurkela.\nThe licence of both "
       "follows.\n\n{}-->\n</head>\n",
-      parts.dark ? " class=\"themed\"" : "",
       policy,
       version(),
       html_text(parts.title),

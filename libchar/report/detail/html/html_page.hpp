@@ -20,7 +20,6 @@ struct PageParts {
   std::string subject;  ///< of what: a file's or scene's name, untrusted
   std::string script;   ///< goes behind page_common.js
   std::string style;
-  bool dark = false;        ///< its scripts and styles have colours for a dark screen
   bool all_numbers = true;  ///< its data are the whole document: it can be saved from the page
 };
 

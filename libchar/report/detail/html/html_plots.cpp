@@ -109,16 +109,18 @@ std::string plot_figure(const char* kind,
 std::string trace_plot(const ChannelView& view, std::size_t index, const LogInfo& log) {
   const ChannelResult& c = *view.result;
   if (c.trace.low.size() < 2) return "";
-  const std::string what =
-      c.trace.block == 1 ? "Every sample."
-                         : fmt::format("Least and largest value of every {} samples{}.",
-                                       count_text(c.trace.block),
-                                       log.rate_hz_of(c.channel) > 0
-                                           ? " (" +
-                                                 duration_text(static_cast<double>(c.trace.block) /
-                                                               log.rate_hz_of(c.channel)) +
-                                                 ")"
-                                           : "");
+  const std::string what = c.trace.block == 1
+                               ? "Every sample; the line is their running mean."
+                               : fmt::format(
+                                     "Least and largest value of every {} samples{}; the line is "
+                                     "the running mean of their middle.",
+                                     count_text(c.trace.block),
+                                     log.rate_hz_of(c.channel) > 0
+                                         ? " (" +
+                                               duration_text(static_cast<double>(c.trace.block) /
+                                                             log.rate_hz_of(c.channel)) +
+                                               ")"
+                                         : "");
   const std::string marked =
       view.marks.empty() ? "" : " Marked: what was found in it and is no noise.";
   return plot_figure(

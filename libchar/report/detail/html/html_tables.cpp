@@ -23,8 +23,23 @@ std::string capital(std::string head) {
   return head;
 }
 
+/// With a true minus in front of its numbers: "−37.2 %".
+std::string number_html(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || text[i - 1] == ' ' || text[i - 1] == '[';
+    const bool number = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    if (text[i] == '-' && begins && number)
+      out += "−";
+    else
+      out += text[i];
+  }
+  return html_text(out);
+}
+
 std::string linked(const Cell& cell) {
-  const std::string text = html_text(cell.text);
+  if (cell.code) return html_text(cell.text);
+  const std::string text = number_html(cell.text);
   if (!cell.anchor.empty())
     return fmt::format("<a href=\"#{}\">{}</a>", html_attribute(cell.anchor), text);
   if (!cell.address.empty())
@@ -38,7 +53,7 @@ std::string cell_content(const Cell& cell) {
   for (const Cell::Mark& mark : cell.marks) out += " " + html_chip(mark.text, mark.tint);
   const std::string interval =
       cell.high.empty() ? cell.low : fmt::format("[{}, {}]", cell.low, cell.high);
-  if (!interval.empty()) out += "<span class=\"ci\">" + html_text(interval) + "</span>";
+  if (!interval.empty()) out += "<span class=\"ci\">" + number_html(interval) + "</span>";
   for (const std::string& note : cell.notes)
     out += "<span class=\"ci dim\">" + html_text(note) + "</span>";
   for (const Cell& line : cell.lines) out += "<div>" + cell_content(line) + "</div>";
