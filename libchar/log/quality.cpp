@@ -1198,6 +1198,10 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
     else if (state.top.are_marks(state.top.third + state.bottom.value))
       q.signs.marks.insert(q.signs.marks.end(), {state.top.next, q.maximum});
   }
+  // What rests at zero is no mark, however far the rest is from it.
+  const std::uint64_t resting = state.odd.same.from_length(kFrozenRun - 1).second;
+  const bool rests = state.odd.zero.count > 0 && 2 * resting > state.odd.zero.count;
+  if (rests) std::erase(q.signs.marks, 0.0);
   q.signs.marked = 0;
   for (const double mark : q.signs.marks)
     q.signs.marked += mark == q.minimum            ? state.bottom.count
@@ -1223,7 +1227,8 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   q.at_maximum = state.top.count;
   q.repeats = state.odd.same.set();
   if (state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values))
-    q.saturated = state.top.saturated() + state.bottom.saturated();
+    q.saturated = (rests && q.maximum == 0 ? 0 : state.top.saturated()) +
+                  (rests && q.minimum == 0 ? 0 : state.bottom.saturated());
   q.difference_kurtosis = state.differences.kurtosis();
   q.difference_sd = state.differences.standard_deviation();
   q.signs.counter = state.odd.counter.sentence();

@@ -394,7 +394,7 @@ bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, F
   for (const double mark : options.missing.marks)
     for (std::size_t c = 0; c < block.columns.size(); ++c) {
       std::uint64_t count = 0;
-      for (double& value : block.columns[c]) {
+      for (double& value : std::span(block.columns[c]).first(block.rows)) {
         if (value != mark && value * factors[c] != mark) continue;
         value = kMissing;
         ++count;

@@ -2,7 +2,12 @@
 
 #include "libchar/log/time/calendar.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/log/log_text.hpp"
 
 using namespace libchar;
 
@@ -75,4 +80,36 @@ TEST_CASE("the order of day and month comes from the data, else it is a guess") 
   CHECK(date_style({"05/01/2024"}, true).order == DateOrder::day_first);
   CHECK(date_style({"05.01.2024"}, false).order == DateOrder::day_first);
   CHECK_FALSE(date_style({"2024-05-01"}, false).ambiguous);
+}
+
+TEST_CASE("times of day as digits, hhmmss, are told from numbers by their even steps") {
+  const auto text =
+      [](const std::string& name, int begin, double rate, int samples, const char* form) {
+        std::string out = name + ",x\n";
+        for (int i = 0; i < samples; ++i) {
+          const double s = begin + i / rate;
+          const int whole = static_cast<int>(s) % 86400;
+          out += fmt::format(fmt::runtime(form),
+                             whole / 3600 * 10000 + whole / 60 % 60 * 100 + whole % 60 +
+                                 (s - std::floor(s))) +
+                 fmt::format(",{}\n", i % 7);
+        }
+        return out;
+      };
+  for (const char* form : {"{:09.2f}", "{:.2f}"})
+    for (const double rate : {1.0, 5.0, 10.0})
+      for (const int begin : {187, 45296, 86000}) {
+        const Recording r = test::read_text(text("time", begin, rate, 4000, form));
+        INFO(form << ", " << rate << " Hz from " << begin);
+        CHECK(r.info.time.rate_hz == Approx(rate));
+        CHECK(r.samples[0].size() == 4000);
+      }
+  // Seconds, hundreds of them, and counts stay what they are.
+  std::string seconds = "time,x\n", hundreds = "time,x\n";
+  for (int i = 0; i < 900; ++i) {
+    seconds += fmt::format("{},{}\n", 10000 + i, i % 7);
+    hundreds += fmt::format("{},{}\n", 10000 + 100 * i, i % 7);
+  }
+  CHECK(test::read_text(seconds).samples[0].size() == 900);
+  CHECK(test::read_text(hundreds).samples[0].size() == 900);
 }

@@ -81,7 +81,7 @@ TEST_CASE("JSON that is broken is refused with the number of the object, a cut e
   const auto said = [](const std::string& text) { return outcome(Written("a.jsonl", text).path); };
   CHECK_THAT(said("{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":}\n"),
              Catch::Contains("object 2") && Catch::Contains("E0337"));
-  CHECK_THAT(said("{\"t\":0,\"x\":1}\nfoo\n"), Catch::Contains("object 2"));
+  CHECK_THAT(said("{\"t\":0,\"x\":1}\nfoo\n"), Catch::Contains("broken object: foo"));
   CHECK_THAT(said("{\"t\":0 \"x\":1}\n"), Catch::Contains("E0337"));
   CHECK_THAT(said("{\"a\":\"" + std::string(3000000, 'x')),
              Catch::Contains("more than 1048576 bytes"));
@@ -236,6 +236,27 @@ TEST_CASE("a cut or broken workbook, archive or sound ends in a sentence or in w
       std::string broken = bytes;
       broken[at] = static_cast<char>(~broken[at]);
       CHECK(!outcome(Written("a" + suffix, broken).path).empty());
+    }
+  }
+}
+
+TEST_CASE("JSON lines: what is no object is a row that cannot be read, and the others are read") {
+  for (const std::string broken :
+       {R"({"t": 0.5, "x": [1, 2)", R"({"t": 0.5, "x: 3})", "garbage", R"({"t" 0.5})"}) {
+    std::string text;
+    for (int i = 0; i < 100; ++i)
+      text += i == 50 ? broken + "\n"
+                      : "{\"t\": " + std::to_string(0.01 * i) +
+                            ", \"x\": " + std::to_string(i % 7) + "}\n";
+    const Written log("log.jsonl", text);
+    INFO(broken);
+    if (broken != R"({"t" 0.5})") {
+      CHECK(outcome(log.path).find("leaves out and counts rows") != std::string::npos);
+      ReadOptions options;
+      options.missing.bad_rows = true;
+      CHECK(read_recording(log.path, options).samples[0].size() >= 99);
+    } else {
+      CHECK(outcome(log.path).find("E0337") != std::string::npos);
     }
   }
 }

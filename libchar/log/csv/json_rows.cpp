@@ -177,6 +177,10 @@ class JsonRows final : public MadeText {
       auto object = next_object();
       if (!object) break;
       bytes += object->size();
+      if (!object->starts_with('{')) {
+        head_.push_back(std::move(*object));
+        continue;
+      }
       for (const auto& cell : ObjectCells(*object, place()).cells()) {
         if (!columns_.emplace(cell.path, columns_.size()).second) continue;
         if (columns_.size() > kMaxColumns)
@@ -191,6 +195,13 @@ class JsonRows final : public MadeText {
   }
 
   void row(const std::string& object, std::string& text) {
+    if (!object.starts_with('{')) {
+      // A row that cannot be read, as any broken line of a table: its beginning is its only cell.
+      constexpr std::size_t kShown = 40;
+      add_quoted(text, "broken object:" + object.substr(0, kShown));
+      text += '\n';
+      return;
+    }
     std::vector<std::string> cells(columns_.size());
     for (const auto& cell : ObjectCells(object, place()).cells()) {
       const auto column = columns_.find(cell.path);
@@ -234,8 +245,10 @@ class JsonRows final : public MadeText {
         }
       }
       const char c = from_.raw[from_.at + length];
-      if (length == 0 && c != '{')
-        ObjectCells(std::string_view(from_.raw).substr(from_.at), place()).cells();
+      const bool line = length == 0 && c != '{';
+      // An object at the begin of a line, inside of another: that one is broken.
+      const bool next = c == '{' && length > 0 && from_.raw[from_.at + length - 1] == '\n';
+      if (line || next) return broken(length);
       if (escaped) {
         escaped = false;
       } else if (quoted) {
@@ -251,6 +264,17 @@ class JsonRows final : public MadeText {
         return object;
       }
     }
+  }
+  /// What is no object, to the end of its line, marked so that it does not begin like one.
+  std::string broken(std::size_t length) {
+    std::size_t end = from_.raw.find('\n', from_.at + length);
+    while (length == 0 && end == std::string::npos && from_.raw.size() - from_.at < kMaxLine &&
+           from_.more())
+      end = from_.raw.find('\n', from_.at);
+    if (length == 0) length = std::min(end, from_.raw.size()) - from_.at;
+    std::string text = " " + from_.raw.substr(from_.at, length);
+    from_.at += length;
+    return text;
   }
   [[noreturn]] void refuse_long() const {
     throw input_error("E0337", place()).says("an object of more than {} bytes", kMaxLine);

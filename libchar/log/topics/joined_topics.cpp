@@ -88,7 +88,9 @@ class TopicQueue {
 
 class JoinedTopics final : public RowSource {
  public:
-  JoinedTopics(std::vector<TopicQueue> topics, const ReadOptions& options)
+  JoinedTopics(std::vector<TopicQueue> topics,
+               const std::vector<std::string>& left_out,
+               const ReadOptions& options)
       : topics_(std::move(topics)),
         aligned_(topics_.size() > 1 && !options.kinds.own_stamps),
         behind_ns_(topics_.size(), 0),
@@ -97,6 +99,8 @@ class JoinedTopics final : public RowSource {
         raw_(topics_.size(), 0) {
     learn();
     describe(options);
+    if (!left_out.empty())
+      info_.dialect.push_back("left out, without stamps: " + first_names(left_out));
   }
 
   const LogInfo& info() const override { return info_; }
@@ -323,12 +327,17 @@ std::unique_ptr<RowSource> open_joined_topics(const std::vector<TopicChoice>& ch
         .says("{} topics match this name, at most {} are read as one", chosen.size(), kMostTopics)
         .got(options.topic);
   std::vector<TopicQueue> topics;
+  std::vector<std::string> left_out;  // without stamps
   for (const TopicChoice& choice : chosen) {
     ReadOptions one = options;
     one.topic = all[choice.topic].name;
     one.channels = choice.channels;
     one.hash = options.hash && topics.empty();
     auto rows = open_topic_rows(open(path, options), path, format, one);
+    if (rows->info().time.column.empty() && chosen.size() > 1) {
+      left_out.push_back(one.topic);
+      continue;
+    }
     if (rows->info().time.column.empty())
       throw usage_error("E0425", path)
           .says("this topic has no stamps, by which it could be joined with others")
@@ -336,7 +345,12 @@ std::unique_ptr<RowSource> open_joined_topics(const std::vector<TopicChoice>& ch
           .hint("`topic` reads it alone");
     topics.emplace_back(std::move(rows), one.topic);
   }
-  return std::make_unique<JoinedTopics>(std::move(topics), options);
+  if (topics.empty())
+    throw usage_error("E0425", path)
+        .says("none of these topics has stamps, by which they could be joined")
+        .got(options.topic)
+        .hint("`topic` reads one alone");
+  return std::make_unique<JoinedTopics>(std::move(topics), left_out, options);
 }
 
 }  // namespace libchar

@@ -122,7 +122,7 @@ std::size_t odd_steps(const std::vector<double>& values) {
 }
 
 /// NMEA's hhmmss.ss, and the like: all are times of day, and as such they step more evenly than as numbers.
-bool is_clock_digits(const StampStudy& study, std::size_t column) {
+bool is_clock_digits(const StampStudy& study, std::size_t column, const std::string& named_so) {
   const auto times = [&](const std::vector<Cells>& rows, std::size_t at, auto&& take) {
     for (const Cells& row : rows) {
       if (at >= row.size()) continue;
@@ -147,10 +147,17 @@ bool is_clock_digits(const StampStudy& study, std::size_t column) {
     numbers.push_back(number);
     clocks.push_back(clock);
   };
-  constexpr std::size_t kFewestDigits = 5;  // 9:30:59 is 93059 or 093059
-  const std::string& front = study.rows.front()[column].text;
-  if (std::min(front.find(study.style.decimal), front.size()) < kFewestDigits) return false;
   if (!times(study.rows, column, collect) || !rises || numbers.size() < 3) return false;
+  // 93059 is 9:30:59. Fewer digits are a clock's shortly after midnight, and any elapsed seconds.
+  constexpr std::size_t kFewestDigits = 5;
+  constexpr double kFastest = 0.09;  // receivers of that kind: at most 10 Hz
+  const std::string& front = study.rows.front()[column].text;
+  const std::string name = ascii_lower(named_so);
+  const auto called = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+  const bool named =
+      called("utc") || called("hhmmss") || (called("time") && usual_step(numbers) > kFastest);
+  if (!named && std::min(front.find(study.style.decimal), front.size()) < kFewestDigits)
+    return false;
   numbers.clear();
   clocks.clear();
   if (!study.whole_head || !times(study.whole_head(column), 0, collect) || !rises) return false;
@@ -298,7 +305,8 @@ TableFront front_of(const StampStudy& study,
     label.text = second || (c < study.kinds.size() && (study.kinds[c] == ColumnKind::text ||
                                                        study.kinds[c] == ColumnKind::empty));
     if (column.left_out) label.text = true;
-    label.calendar = label.calendar || (!pair && !label.text && is_clock_digits(study, c));
+    label.calendar =
+        label.calendar || (!pair && !label.text && is_clock_digits(study, c, column.text));
     table.columns.push_back(label);
   }
   table.named = dialect.has_header;
