@@ -351,19 +351,24 @@ class WrapWatch {
   }
   void read(const DifferenceMoments& all, double range, ChannelQuality::Signs& signs) const {
     constexpr std::uint64_t kFewest = 3;
-    constexpr double kMost = 0.9;  // of the sum of squares of the differences
+    constexpr double kMost = 0.9;      // of the sum of squares of the differences
+    constexpr double kFewSteps = 1.5;  // a heading about north wraps with every second sample
     const auto count = static_cast<double>(count_);
     if (count_ < kFewest || !(least_ >= kJump * range) ||
-        !(count * least_ * least_ > kMost * all.s2) || !(all.n > 10 * count))
+        !(count * least_ * least_ > kMost * all.s2) || !(all.n > kFewSteps * count))
       return;
     const double usual = (all.s1 - sum_) / (all.n - count);
     // Jumps back over the end count against those over it.
     const double period = (size_ - usual * sum_ / size_ * count) / count;
     // A step of noise across the end is larger than others by up to their deviation.
     const double rest = std::max(0.0, all.s2 - size_ * size_ / count) / all.n;
-    signs.wraps = count_;
-    signs.period =
+    const double found =
         with_digits(period, (1 + 3 / std::sqrt(count)) * std::sqrt(rest) + 1e-9 * period);
+    // A signal of two levels jumps as often, but not by a turn.
+    const bool turn = found == 360 || found == 2 * std::numbers::pi;
+    if (!turn && !(all.n > 10 * count)) return;
+    signs.wraps = count_;
+    signs.period = found;
   }
   static void layout(auto& at, auto& w) {
     at(w.count_);
@@ -374,8 +379,9 @@ class WrapWatch {
   // A turn or a power of two, else the shortest decimal number within `off`.
   static double with_digits(double value, double off) {
     constexpr double kTurn = 2 * std::numbers::pi;
+    // Steps that cross the end are larger than others: the jumps of a noisy heading are short of a turn by as much.
     for (const double natural : {kTurn, kTurn / 2, 360.0, std::exp2(std::round(std::log2(value)))})
-      if (std::fabs(natural - value) <= off) return natural;
+      if (std::fabs(natural - value) <= 3 * off) return natural;
     for (int digits = 1; digits < 17; ++digits)
       if (const double short_one = rounded(value, digits); std::fabs(short_one - value) <= off)
         return short_one;

@@ -183,6 +183,18 @@ TEST_CASE("two marks side by side are marks, and no jumps of a phase") {
   CHECK(q.signs.wraps == 0);
 }
 
+TEST_CASE("a heading about north wraps with many samples, two levels do not") {
+  std::vector<double> x = gaussian(20000, 3), levels = x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = std::fmod(360.2 + 0.4 * x[i], 360.0);
+    levels[i] = (i / 3 % 2 == 0 ? 0 : 90) + 0.1 * levels[i];
+  }
+  const ChannelQuality q = meter(x);
+  CHECK(q.signs.wraps > 4000);
+  CHECK(q.signs.period == 360);
+  CHECK(meter(levels).signs.wraps == 0);
+}
+
 TEST_CASE("the period of a phase that wraps is a turn or a power of two where it can be") {
   for (const double period : {2 * std::numbers::pi, 4096.0}) {
     std::vector<double> phase = gaussian(20000, 0.002 * period);
