@@ -600,7 +600,7 @@ constexpr std::uint64_t kFrozenRun = 8;
 
 /// Samples that are exactly zero, and how near the others come to it.
 struct ZeroWatch {
-  std::uint64_t count = 0;
+  std::uint64_t count = 0, repeats = 0;  // repeats: of a zero right before
   double nearest = __builtin_inf();
 
   void join(std::uint64_t more, double near) {
@@ -671,7 +671,8 @@ void QualityMeter::State::layout(auto& at, auto& s) {
   DistinctValues::layout(at, s.distinct);
   WrapWatch::layout(at, s.odd.wraps);
   at(s.odd.resting.value);
-  at(s.odd.resting.count, s.odd.zero.count, s.odd.zero.nearest);
+  at(s.odd.resting.count, s.odd.zero.count, s.odd.zero.repeats);
+  at(s.odd.zero.nearest);
   CounterWatch::layout(at, s.odd.counter);
   Extreme::layout(at, s.top);
   Extreme::layout(at, s.bottom);
@@ -811,7 +812,10 @@ void QualityMeter::State::runs(const double* x,
     for (; i < n && !equals(i); ++i) odd.resting.look(x[i], 1);
     odd.same.push_without(i - from);
     const std::uint64_t run = odd.same.now() + 2;
-    for (from = i; i < n && equals(i); ++i) odd.resting.look(x[i], run + (i - from));
+    for (from = i; i < n && equals(i); ++i) {
+      odd.resting.look(x[i], run + (i - from));
+      odd.zero.repeats += x[i] == 0 ? 1 : 0;
+    }
     odd.same.push_run(i - from, at + from);
   }
 }
@@ -914,7 +918,9 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
   const double n = static_cast<double>(q.samples), share = static_cast<double>(q.signs.zeros) / n;
   const double step = q.resolution.value_or(0);
   const double density = 1 / (std::sqrt(2 * std::numbers::pi) * q.standard_deviation);
-  if (share < kLeastShare + kTimes * step * density) return false;
+  // What values repeat by anyway: of any density, a value comes at most about so often.
+  const double by_chance = kTimes * static_cast<double>(q.signs.other_repeats) / n;
+  if (share < kLeastShare + std::max(kTimes * step * density, by_chance)) return false;
   const bool band =
       share > kBand && q.signs.nearest_to_zero > kApart * std::max(step, 1 / (2 * n * density));
   Finding found = finding(
@@ -1108,6 +1114,7 @@ void QualityMeter::State::join(const State& later) {
   odd.wraps.join(later.odd.wraps);
   odd.resting.join(later.odd.resting);
   odd.zero.join(later.odd.zero.count, later.odd.zero.nearest);
+  odd.zero.repeats += later.odd.zero.repeats;
   differences.join(later.differences);
   odd.counter.join(later.odd.counter, step, later.beginning.value);
   for (const double value : later.distinct.values())
@@ -1228,10 +1235,11 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   q.signs.resting_value = state.odd.resting.value;
   q.signs.at_rest = state.odd.resting.count;
   q.signs.zeros = state.odd.zero.count;
+  q.repeats = state.odd.same.set();
+  q.signs.other_repeats = q.repeats - std::min(q.repeats, state.odd.zero.repeats);
   q.signs.nearest_to_zero = state.odd.zero.nearest;
   q.at_minimum = state.bottom.count;
   q.at_maximum = state.top.count;
-  q.repeats = state.odd.same.set();
   if (state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values))
     q.saturated = (rests && q.maximum == 0 ? 0 : state.top.saturated()) +
                   (rests && q.minimum == 0 ? 0 : state.bottom.saturated());

@@ -34,9 +34,10 @@ struct ChannelQuality {
     std::vector<Place> lines_at;
     double held_times =
         1;  ///< each value is recorded, on average, where a slower sensor was polled
-    std::uint64_t marked = 0;    ///< samples at `marks`
-    std::uint64_t zeros = 0;     ///< samples that are exactly 0
-    double nearest_to_zero = 0;  ///< least magnitude of the others
+    std::uint64_t marked = 0;         ///< samples at `marks`
+    std::uint64_t other_repeats = 0;  ///< samples that equal the one before and are not 0
+    std::uint64_t zeros = 0;          ///< samples that are exactly 0
+    double nearest_to_zero = 0;       ///< least magnitude of the others
   };
   std::uint64_t samples = 0;  ///< not missing
   std::uint64_t missing = 0;

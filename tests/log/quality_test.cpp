@@ -168,6 +168,9 @@ TEST_CASE(
   CHECK_FALSE(has(meter(coarse).findings, "missing_mark"));
   CHECK_FALSE(has(meter(coarse).findings, "dead_band"));
   CHECK_FALSE(has(meter(moving).findings, "missing_mark"));
+  for (std::size_t i = 0; i < x.size(); ++i)  // rest about zero in coarse steps, between motions
+    moving[i] = std::round((i / 5000 % 2 == 0 ? 0.05 : 5) * x[i] * 100) / 100;
+  CHECK_FALSE(has(meter(moving).findings, "missing_mark"));
   for (std::size_t i = 0; i < x.size(); ++i) moving[i] = i < 20000 ? 0 : 3 + 0.1 * x[i];  // a wheel
   CHECK_FALSE(has(meter(moving).findings, "missing_mark"));
   CHECK(meter(moving).saturated == 0);

@@ -201,7 +201,7 @@ void add_found(std::vector<RunMark>& out,
                double end_s) {
   constexpr std::size_t kMostMarks = 24;
   if (found.sensor >= r.sensors.size() || out.size() >= kMostMarks) return;
-  const std::string& name = r.sensors[found.sensor].name;
+  const std::string& name = r.sensors[detail::in_memory(found.sensor)].name;
   const double to_s = found.to_s.value_or(end_s);
   const bool declared = std::any_of(out.begin(), out.end(), [&](const RunMark& mark) {
     return mark.sensor == name && mark.from_s < to_s && found.from_s < mark.to_s;
