@@ -907,14 +907,19 @@ std::vector<Interval> times_of(const std::vector<ChannelQuality::Signs::Place>& 
   return out;
 }
 
+/// Changes from sample to sample as noise does: what moves smoothly may rest, or go straight.
+bool is_restless(const ChannelQuality& q) {
+  constexpr double kLeast = 0.5;
+  return q.difference_sd > kLeast * q.standard_deviation;
+}
+
 /// Zeros among values that hardly repeat: they stand for no reading, or for all values near them. True where found.
 bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
   constexpr std::uint64_t kFewest = 20;
-  constexpr double kLeastShare = 5e-4, kTimes = 5, kApart = 20, kBand = 0.01, kRestless = 0.5;
+  constexpr double kLeastShare = 5e-4, kTimes = 5, kApart = 20, kBand = 0.01;
   const std::uint64_t alone = q.signs.zeros - std::min(q.signs.zeros, q.signs.frozen);
   if (q.distinct_values <= 16 || 2 * alone < q.signs.zeros || q.signs.zeros < kFewest) return false;
-  if (!(q.minimum < 0) || !(q.maximum > 0) || !(q.difference_sd > kRestless * q.standard_deviation))
-    return false;
+  if (!(q.minimum < 0) || !(q.maximum > 0) || !is_restless(q)) return false;
   const double n = static_cast<double>(q.samples), share = static_cast<double>(q.signs.zeros) / n;
   const double step = q.resolution.value_or(0);
   const double density = 1 / (std::sqrt(2 * std::numbers::pi) * q.standard_deviation);
@@ -943,14 +948,14 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
 /// gives the chance of a run among these samples; a record that holds all of its values has a rhythm,
 /// and a quantity that changes little from sample to sample may rest.
 void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
-  constexpr double kMuch = 0.01, kChance = 1e-3, kHeld = 0.5, kRestless = 0.5;
+  constexpr double kMuch = 0.01, kChance = 1e-3, kHeld = 0.5;
   if (q.distinct_values <= 16) return;
   const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
   const double repeats =
       (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
   const bool held =
       q.signs.held_times > 1 || frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
-  const bool noisy = q.difference_sd > kRestless * q.standard_deviation;
+  const bool noisy = is_restless(q);
   const bool rare =
       q.saturated == 0 && !held && noisy && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
   if (q.longest_stuck < (rare ? kFrozenRun : 100)) return;
@@ -990,10 +995,10 @@ void judge_held(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
 
 /// Gaps that were filled. A signal without noise is full of lines.
 void judge_lines(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
-  constexpr double kRestless = 0.5, kMuch = 0.01, kAll = 0.5;
+  constexpr double kMuch = 0.01, kAll = 0.5;
   constexpr std::uint64_t kFewestSamples = 1000;
   if (q.signs.lines == 0 || q.samples < kFewestSamples || q.distinct_values <= 16) return;
-  if (!q.signs.counter.empty() || !(q.difference_sd > kRestless * q.standard_deviation)) return;
+  if (!q.signs.counter.empty() || !is_restless(q)) return;
   const double share = static_cast<double>(q.signs.on_lines) / static_cast<double>(q.samples);
   Finding lines = finding(
       "interpolated",

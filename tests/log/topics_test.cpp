@@ -106,6 +106,20 @@ struct MemoryReader final : TopicReader {
   std::uint64_t bytes_read() const override { return at; }
 };
 
+void take_all(RowSource& rows,
+              std::vector<std::vector<double>>& columns,
+              std::vector<std::int64_t>& stamps,
+              Findings& warnings) {
+  RowBlock block;
+  while (rows.next(block, warnings)) {
+    columns.resize(block.columns.size());
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      columns[c].insert(columns[c].end(), block.columns[c].begin(), block.columns[c].end());
+    stamps.insert(stamps.end(), block.time_ns.begin(), block.time_ns.end());
+  }
+  rows.finish(warnings);
+}
+
 struct Opened {
   test::TemporaryFolder folder;
   std::unique_ptr<RowSource> rows;
@@ -117,14 +131,7 @@ struct Opened {
     const std::string path = (folder / "a.bag").string();
     std::ofstream(path, std::ios::binary) << "abc";
     rows = open_topic_rows(std::move(reader), path, "bag", options);
-    RowBlock block;
-    while (rows->next(block, warnings)) {
-      columns.resize(block.columns.size());
-      for (std::size_t c = 0; c < columns.size(); ++c)
-        columns[c].insert(columns[c].end(), block.columns[c].begin(), block.columns[c].end());
-      stamps.insert(stamps.end(), block.time_ns.begin(), block.time_ns.end());
-    }
-    rows->finish(warnings);
+    take_all(*rows, columns, stamps, warnings);
   }
   std::string names() const {
     std::string all;
@@ -289,14 +296,7 @@ struct Joined {
     const auto topics = flight();
     rows = open_joined_topics(
         choose_topics(topics, options, path), topics, next_clock, path, "bag", options);
-    RowBlock block;
-    while (rows->next(block, warnings)) {
-      columns.resize(block.columns.size());
-      for (std::size_t c = 0; c < columns.size(); ++c)
-        columns[c].insert(columns[c].end(), block.columns[c].begin(), block.columns[c].end());
-      stamps.insert(stamps.end(), block.time_ns.begin(), block.time_ns.end());
-    }
-    rows->finish(warnings);
+    take_all(*rows, columns, stamps, warnings);
   }
 };
 
