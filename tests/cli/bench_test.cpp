@@ -128,6 +128,16 @@ TEST_CASE("bench: an option of a part that is not done is refused, with that par
              Contains("characterization and design"));
 }
 
+TEST_CASE("bench: --samples bounds the records that check a design") {
+  const auto run = [](const char* samples) {
+    return test::run({"bench", test::fixture("models/imu.sensor.yaml"), "--quick", "--parts", "design", "--records",
+                      "2", "--samples", samples})
+        .out;
+  };
+  CHECK_THAT(run("64"), Contains("not simulated"));
+  CHECK_THAT(run("4000000"), !Contains("not simulated"));
+}
+
 TEST_CASE("bench: a file may stand behind a list") {
   CHECK_THAT(test::run({"bench", "--parts", "characterization", "no-such-file.csv"}).err,
              Contains("no-such-file.csv") && Contains("E0101"));

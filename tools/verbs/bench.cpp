@@ -165,6 +165,7 @@ DesignBench bench_needs(Session& session, const BenchVerb& verb, const BenchInpu
   options.records = verb.records != 0 ? detail::in_memory(verb.records) : verb.quick ? 12 : 40;
   options.seed = verb.seed;
   if (verb.quick) options.most_samples = 4e5;
+  if (verb.samples != 0) options.most_samples = static_cast<double>(verb.samples);
   return bench_design(inputs.signals, options, session.terminal);
 }
 
@@ -324,7 +325,7 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
                     100000);
   options.add_count("--samples",
                     verb->samples,
-                    "of a record, at most (default: 200000; quick: 32768)",
+                    "of a record, at most (default: 200000, a design's 4000000; quick: 32768, 400000)",
                     64,
                     std::uint64_t{1} << 32U);
   options.add_count("--runs", verb->runs, "of each scene (default: 12; quick: 3)", 2, 10000);
