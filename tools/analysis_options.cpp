@@ -119,8 +119,9 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
       "--interpolated",
       "N",
       [&a](const std::string& text) { a.options.interpolated = parse_count(text, 4); },
-      "treat what lies on straight lines of N or more samples as missing, as gaps that were filled "
-      "(default: it counts)");
+      "treat what lies on straight lines of N or more samples as missing, as gaps that were "
+      "filled; "
+      "with fewer than 8 also what is straight to a thousandth (default: it counts)");
   verb.add_bytes(
       "--memory",
       a.options.memory_bytes,

@@ -23,6 +23,7 @@
 #include "libchar/log/read.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/spectrum/lines.hpp"
+#include "libchar/spectrum/median_spectrum.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
 
@@ -45,6 +46,7 @@ struct Wanted {
       true;  ///< needs the mixture of a fit for its intervals: one of white noise is made when `fit` is off
   bool spectrum = true;
   bool fit = true;
+  bool lines = true;  ///< of the spectrum
 };
 
 /// Only rest is analysed.
@@ -72,7 +74,10 @@ struct CharacterizeOptions {
   /// length of a segment where spectrum.segment is 0; 0 = a quarter of a record of at most a leaf
   /// (2^20 samples), 2^16 samples of a longer one
   double segment_s = 0;
-  bool quarter_segments = false;  ///< a quarter of a longer record too
+  bool quarter_segments = false;                  ///< a quarter of a longer record too
+  SegmentAverage average = SegmentAverage::mean;  ///< of the segments
+  /// the spectrum in at most so many bins, even on a logarithmic axis of frequency; 0: as Welch gives it
+  std::uint64_t spectrum_bins = 400;
   FitOptions fit;
   /// Samples kept at a time at most, but for a leaf of one channel: a log of many channels is read
   /// several times, and what needs all samples of a longer one (a deviation other than oadev at
@@ -106,7 +111,7 @@ struct ChannelResult {
   AllanCurve
       allan;  ///< with intervals for the fitted mixture; no points when the record is too short
   std::vector<AllanCurve> more_allan;  ///< of `more_types`; no points where a record is too short
-  Spectrum spectrum;                   ///< log-binned for plots and curves.csv, at most 400 bins
+  Spectrum spectrum;                   ///< in `spectrum_bins`
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
   std::vector<NoiseType> noise_types;  ///< by averaging time; of phase and frequency

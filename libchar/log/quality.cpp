@@ -164,7 +164,7 @@ double fold(const Four& lane) {
 
 /// What one look at a block gives.
 struct BlockSums {
-  double sum = 0;                         // of x - shift
+  double sum = 0, squares = 0;            // of x - shift
   double low = 0, high = 0;               // extremes
   double jump = 0;                        // largest |x - before|
   double s1 = 0, s2 = 0, s3 = 0, s4 = 0;  // sums of powers of x - before
@@ -179,7 +179,7 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
                                       const double* before,
                                       std::size_t n,
                                       double shift) {
-  Four sum = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
+  Four sum = {}, squares = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
   auto repeats = low != low;  // none yet
   auto zeros = repeats;       // counted down
@@ -187,7 +187,9 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
   const std::size_t whole = n - n % 4;
   for (std::size_t i = 0; i < whole; i += 4) {
     const Four v = LIBCHAR_FOUR(x + i), d = v - LIBCHAR_FOUR(before + i), q = d * d;
-    sum += v - shift;
+    const Four off = v - shift;
+    sum += off;
+    squares += off * off;
     low = v < low ? v : low;
     high = v > high ? v : high;
     repeats |= d == 0.0;
@@ -204,6 +206,7 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
     const double v = x[i], d = v - before[i], q = d * d;
     const std::size_t k = i % 4;
     sum[k] += v - shift;
+    squares[k] += (v - shift) * (v - shift);
     low[k] = v < low[k] ? v : low[k];
     high[k] = v > high[k] ? v : high[k];
     repeats[k] |= d == 0 ? -1 : 0;
@@ -216,6 +219,7 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
     a4[k] += q * q;
   }
   return {fold(sum),
+          fold(squares),
           std::min({low[0], low[1], low[2], low[3]}),
           std::max({high[0], high[1], high[2], high[3]}),
           std::sqrt(std::max({top[0], top[1], top[2], top[3]})),
@@ -228,26 +232,6 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
           std::min({near[0], near[1], near[2], near[3]})};
 }
 constexpr InLanes<sums_of_lanes> sums_of;
-
-/// Sum of squares of (x - shift) - offset.
-LIBCHAR_LANES double squares_about_lanes(const double* x,
-                                         std::size_t n,
-                                         double shift,
-                                         double offset) {
-  Four sum[2] = {};
-  const std::size_t whole = n - n % 8;
-  for (std::size_t i = 0; i < whole; i += 8)
-    for (std::size_t h = 0; h < 2; ++h) {
-      const Four d = (LIBCHAR_FOUR(x + i + 4 * h) - shift) - offset;
-      sum[h] += d * d;
-    }
-  for (std::size_t i = whole; i < n; ++i) {
-    const double d = (x[i] - shift) - offset;
-    sum[0][i % 4] += d * d;
-  }
-  return fold(sum[0] + sum[1]);
-}
-constexpr InLanes<squares_about_lanes> squares_about;
 
 // Or beyond what is a measurement.
 LIBCHAR_LANES bool any_missing_lanes(const double* x, std::size_t n) {
@@ -272,13 +256,12 @@ struct MeanAndSpread {
       0;  // the first value: the mean is kept less that, so that an offset costs no digits
   double n = 0, mean = 0, m2 = 0;
 
-  void block(const double* x, std::size_t count, double sum_about_first) {
-    const double shift = x[0];
-    if (n == 0) origin = shift;
-    const double offset = sum_about_first / static_cast<double>(count);
-    const double other = static_cast<double>(count), total = n + other,
-                 d = (shift - origin) + offset - mean;
-    m2 += squares_about(x, count, shift, offset) + d * d * n * other / total;
+  // The first value is one of the block, so that its own deviation is at least 1/count of what cancels here.
+  void block(double first, std::size_t count, const BlockSums& sums) {
+    if (n == 0) origin = first;
+    const double other = static_cast<double>(count), total = n + other, offset = sums.sum / other,
+                 d = (first - origin) + offset - mean;
+    m2 += std::max(0.0, sums.squares - offset * sums.sum) + d * d * n * other / total;
     mean += d * other / total;
     n = total;
   }
@@ -774,7 +757,7 @@ void QualityMeter::State::process(const double* x,
                                   const BlockSums& sums,
                                   std::size_t n,
                                   std::size_t breaks) {
-  values.block(x, n, sums.sum);
+  values.block(x[0], n, sums);
   minimum = std::min(minimum, sums.low);
   maximum = std::max(maximum, sums.high);
   if (const double range = maximum - minimum; range > 0 && sums.jump >= WrapWatch::kJump * range)
@@ -1230,11 +1213,11 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   for (const auto& [from, to] : state.odd.same.places())
     q.signs.frozen_at.push_back({from - 1, to});
   q.signs.held_times = held_times(state.odd.same);
-  q.signs.line_run = state.odd.lines.least_run();
-  if (q.signs.line_run > 0) {
-    std::tie(q.signs.lines, q.signs.on_lines) =
-        state.odd.lines.runs().from_length(q.signs.line_run);
-    for (const auto& [from, to] : state.odd.lines.runs().places())
+  const detail::LineWatch::Found lines = state.odd.lines.found();
+  q.signs.line_run = lines.least_run;
+  if (lines.least_run > 0) {
+    std::tie(q.signs.lines, q.signs.on_lines) = lines.runs->from_length(lines.least_run);
+    for (const auto& [from, to] : lines.runs->places())
       if (to - from >= q.signs.line_run) q.signs.lines_at.push_back({from - 2, to});
   }
   q.signs.resting_value = state.odd.resting.value;

@@ -35,8 +35,10 @@ std::string two_channels(const test::TemporaryFolder& folder) {
   return path;
 }
 
-LogSpectraOptions at_100_hz() {
-  LogSpectraOptions options;
+CharacterizeOptions at_100_hz() {
+  CharacterizeOptions options;
+  options.spectrum_bins = 0;
+  options.wanted.lines = false;
   options.reading.rate_hz = 100;
   return options;
 }
@@ -46,7 +48,7 @@ LogSpectraOptions at_100_hz() {
 TEST_CASE("log_spectra: welch of each channel, on one axis of frequency") {
   const test::TemporaryFolder folder;
   const std::string path = two_channels(folder);
-  LogSpectraOptions options = at_100_hz();
+  CharacterizeOptions options = at_100_hz();
   options.spectrum.segment = 512;
   const LogSpectra spectra = log_spectra(path, options);
   const Recording log = read_recording(path, options.reading);
@@ -63,7 +65,7 @@ TEST_CASE("log_spectra: welch of each channel, on one axis of frequency") {
 
 TEST_CASE("log_spectra: without a segment all channels get the shortest that one of them needs") {
   const test::TemporaryFolder folder;
-  LogSpectraOptions options = at_100_hz();
+  CharacterizeOptions options = at_100_hz();
   options.spectrum.overlap = 0;
   const LogSpectra spectra = log_spectra(two_channels(folder), options);
   CHECK(spectra.channels[0].spectrum.segment == spectra.channels[1].spectrum.segment);
@@ -72,10 +74,10 @@ TEST_CASE("log_spectra: without a segment all channels get the shortest that one
 TEST_CASE("log_spectra: lines where they are asked for, and found where the tone is") {
   const test::TemporaryFolder folder;
   const std::string path = two_channels(folder);
-  LogSpectraOptions options = at_100_hz();
+  CharacterizeOptions options = at_100_hz();
   CHECK(log_spectra(path, options).channels[0].lines.empty());
-  options.lines = true;
-  options.bins = 20;
+  options.wanted.lines = true;
+  options.spectrum_bins = 20;
   const LogSpectra spectra = log_spectra(path, options);
   REQUIRE(spectra.channels[0].lines.size() == 1);
   CHECK(spectra.channels[0].lines[0].frequency_hz == Approx(kToneHz).epsilon(0.01));
@@ -87,7 +89,7 @@ TEST_CASE("log_spectra: a log without a rate, and one too short, are refused in 
   const test::TemporaryFolder folder;
   const std::string path = two_channels(folder);
   CHECK_THROWS_WITH(log_spectra(path), Contains("rate"));
-  LogSpectraOptions options = at_100_hz();
+  CharacterizeOptions options = at_100_hz();
   options.spectrum.segment = 8192;
   CHECK_THROWS_WITH(log_spectra(path, options),
                     Contains("no channel gives a spectrum: x: ") && !Contains("E0401"));
@@ -98,7 +100,7 @@ TEST_CASE(
     "log_spectra: a record of more than a leaf has segments of 2^16 samples, a leaf a quarter") {
   const test::TemporaryFolder folder;
   const std::string path = (folder / "log.csv").string();
-  LogSpectraOptions options = at_100_hz();
+  CharacterizeOptions options = at_100_hz();
   const auto write = [&](std::size_t rows) {
     std::ofstream out(path);
     out << "x\n";

@@ -297,8 +297,6 @@ class Log(Case):
     def analysis_of(self, verb):
         """Without what only the verbs that fit know."""
         unknown = {"--verify"} if verb == "fit" else {"--verify", "--no-remedies", "--temperature", "temp"}
-        if verb == "psd":
-            unknown |= {"--data", "phase", "frequency"}
         return [word for word in self.made.analysis if word not in unknown]
 
     def mends_there(self, verb, words, flags):

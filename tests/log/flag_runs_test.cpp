@@ -4,6 +4,7 @@
 #include <random>
 
 #include "libchar/log/detail/line_watch.hpp"
+#include "libchar/log/quality.hpp"
 
 using namespace libchar;
 using detail::FlagRuns;
@@ -91,15 +92,16 @@ TEST_CASE("lines: found in noise, not in noise alone, and the same wherever the 
   for (double& v : x) v = std::round(normal(engine) * 1e6) / 1e6;
   LineWatch clean;
   clean.block(x, nullptr, 0);
-  CHECK(clean.least_run() == 0);
+  CHECK(clean.found().least_run == 0);
   for (std::size_t at = 500; at + 100 < x.size(); at += 1000)  // gaps of 20 to 60 samples, filled
     for (std::size_t i = 1, n = 20 + at / 1000 % 41; i < n; ++i)
       x[at + i] = x[at] + (x[at + n] - x[at]) * static_cast<double>(i) / static_cast<double>(n);
   LineWatch whole;
   whole.block(x, nullptr, 0);
-  REQUIRE(whole.least_run() > 0);
-  CHECK(whole.runs().from_length(whole.least_run()).first == 50);
-  for (const auto& [from, to] : whole.runs().places()) {  // chance may add one at either end
+  const LineWatch::Found found = whole.found();
+  REQUIRE(found.least_run > 0);
+  CHECK(found.runs->from_length(found.least_run).first == 50);
+  for (const auto& [from, to] : found.runs->places()) {  // chance may add one at either end
     CHECK(from % 1000 >= 501);
     CHECK(from % 1000 <= 502);
     CHECK(to - from >= 19);
@@ -113,8 +115,8 @@ TEST_CASE("lines: found in noise, not in noise alone, and the same wherever the 
       joined.join(part, true, from);
       from = to;
     }
-    CHECK(joined.least_run() == whole.least_run());
-    check_same(joined.runs(), whole.runs(), 2);
+    CHECK(joined.found().least_run == found.least_run);
+    check_same(*joined.found().runs, *found.runs, 2);
   }
 }
 
@@ -129,6 +131,39 @@ TEST_CASE("lines: noise that is smooth by nature has none") {
     LineWatch watch;
     watch.block(x, nullptr, 0);
     INFO("keeps " << keep);
-    CHECK(watch.least_run() == 0);
+    CHECK(watch.found().least_run == 0);
+  }
+}
+
+TEST_CASE(
+    "lines: short gaps that were filled are found where there are digits, never in coarse noise") {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal;
+  for (const double levels : {2.0, 5.0, 20.0, 100.0, 1e3, 1e4, 1e6}) {  // per standard deviation
+    for (int filled : {0, 2, 3, 5}) {
+      std::vector<double> x(20000);
+      for (double& v : x) v = normal(engine);
+      for (std::size_t at = 100; filled > 0 && at + 10 < x.size(); at += 200)
+        for (int i = 1; i <= filled; ++i)
+          x[at + static_cast<std::size_t>(i)] =
+              x[at] + (x[at + static_cast<std::size_t>(filled) + 1] - x[at]) * i / (filled + 1.0);
+      for (double& v : x) v = std::round(v * levels) / levels;
+      LineWatch watch;
+      watch.block(x, nullptr, 0);
+      INFO(levels << " levels, " << filled << " filled");
+      const LineWatch::Found found = watch.found();
+      if (filled == 0) CHECK(found.least_run == 0);
+      if (filled > 0 && levels >= 1e4) {
+        REQUIRE(found.least_run > 0);
+        const auto places = static_cast<double>(found.runs->from_length(found.least_run).first);
+        CHECK(places > 75);
+        CHECK(places < 105);
+        std::vector<double> kept = x;
+        detail::forget_lines(kept, found.least_run + 2);
+        const auto lost = std::count_if(kept.begin(), kept.end(), [](double v) { return v != v; });
+        CHECK(static_cast<double>(lost) > 0.75 * 100 * filled);
+        CHECK(static_cast<double>(lost) < 1.1 * 100 * filled);
+      }
+    }
   }
 }

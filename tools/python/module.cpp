@@ -333,10 +333,12 @@ Characterized characterize_columns(const py::dict& columns,
 }
 
 py::list psd(const py::object& source, const py::dict& reading, const py::dict& options) {
-  LogSpectraOptions o;
+  CharacterizeOptions o;
+  o.wanted.lines = false;
+  o.spectrum_bins = 0;
   o.reading = reading_of(reading);
   read_spectrum(Given(options), o.spectrum, o.segment_s);
-  Given(options).read("bins", o.bins);
+  Given(options).read("bins", o.spectrum_bins);
   const bool file = py::isinstance<py::str>(source);
   const auto path = file ? source.cast<std::string>() : "";
   const RecordingView view = file ? RecordingView{} : recording_of(source.cast<py::dict>());
@@ -348,12 +350,12 @@ py::list psd(const py::object& source, const py::dict& reading, const py::dict& 
     const LibraryCall call;
     spectra = file ? log_spectra(path, o, progress) : log_spectra(view, o);
     IntervalFactors factors(0.95);
-    for (const ChannelSpectrum& c : spectra.channels)
+    for (const ChannelResult& c : spectra.channels)
       intervals.push_back(spectrum_intervals(c.spectrum, factors));
   }
   py::list out;
   for (std::size_t k = 0; k < spectra.channels.size(); ++k) {
-    ChannelSpectrum& c = spectra.channels[k];
+    ChannelResult& c = spectra.channels[k];
     std::vector<double> ends;
     ends.reserve(2 * intervals[k].size());
     for (const std::optional<Interval>& interval : intervals[k]) {

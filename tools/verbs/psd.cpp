@@ -8,6 +8,7 @@
 #include "analysis_options.hpp"
 #include "libchar/characterize/curves/log_pair_spectra.hpp"
 #include "libchar/characterize/curves/log_spectra.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -24,13 +25,13 @@ using namespace libchar;
 
 struct PsdVerb {
   std::string log, output;
-  LogSpectraOptions options;
+  AnalysisOptions analysis;
   bool json = false, force = false, plot = false;
   std::vector<std::string> cross, coherence;
   std::string spectrogram;
 };
 
-void run_cross(Session& session, const PsdVerb& verb) {
+void run_cross(Session& session, const PsdVerb& verb, const CharacterizeOptions& options) {
   const bool density = !verb.cross.empty();
   const std::vector<std::string>& pair = density ? verb.cross : verb.coherence;
   if (pair.size() != 2)
@@ -39,7 +40,7 @@ void run_cross(Session& session, const PsdVerb& verb) {
         .got(std::to_string(pair.size()))
         .hint("for example --coherence gyro_x,gyro_y");
   const LogCrossSpectrum cross =
-      log_cross_spectrum(verb.log, pair[0], pair[1], verb.options, session.terminal);
+      log_cross_spectrum(verb.log, pair[0], pair[1], options, session.terminal);
   session.terminal.clear();
   for (const std::string& note : cross.cross.notes) session.terminal.note(note);
   session.terminal.note(fmt::format(
@@ -55,8 +56,8 @@ void run_cross(Session& session, const PsdVerb& verb) {
                  {verb.output, verb.json, verb.force});
 }
 
-void run_spectrogram(Session& session, const PsdVerb& verb) {
-  const LogSpectrograms spectrograms = log_spectrograms(verb.log, verb.options, session.terminal);
+void run_spectrogram(Session& session, const PsdVerb& verb, const CharacterizeOptions& options) {
+  const LogSpectrograms spectrograms = log_spectrograms(verb.log, options, session.terminal);
   session.terminal.clear();
   write_document(session,
                  spectrograms.log,
@@ -68,26 +69,27 @@ void run_spectrogram(Session& session, const PsdVerb& verb) {
 
 void run_psd(Session& session, const PsdVerb& verb) {
   foresee_output(verb.output, {verb.log}, verb.force);
-  if (!verb.cross.empty() || !verb.coherence.empty()) return run_cross(session, verb);
-  if (!verb.spectrogram.empty()) return run_spectrogram(session, verb);
-  const LogSpectra spectra = log_spectra(verb.log, verb.options, session.terminal);
+  const CharacterizeOptions options = finish(verb.analysis);
+  if (!verb.cross.empty() || !verb.coherence.empty()) return run_cross(session, verb, options);
+  if (!verb.spectrogram.empty()) return run_spectrogram(session, verb, options);
+  const LogSpectra spectra = log_spectra(verb.log, options, session.terminal);
   session.terminal.clear();
   for (const std::string& note : spectra.notes) session.terminal.note(note);
   report_warnings(session, spectra.log);
-  for (const ChannelSpectrum& c : spectra.channels)
-    report_findings(session, c.channel.name, c.findings);
+  for (const ChannelResult& c : spectra.channels)
+    report_findings(session, c.channel.name, findings_of(c));
   std::string text;
   if (verb.plot) {
     std::vector<SourceCurve> drawn;
-    for (const ChannelSpectrum& c : spectra.channels)
+    for (const ChannelResult& c : spectra.channels)
       drawn.push_back(source_curve(c.channel.name, c.channel.unit, c.spectrum));
     text = terminal_plots(drawn);
   } else if (verb.json) {
     Json document = document_head(session, "spectrum", {&spectra.log});
-    document.update(spectra_json(spectra, verb.options));
+    document.update(spectra_json(spectra, options));
     text = dump_json(document);
   } else {
-    text = verb.options.lines ? lines_csv(spectra) : spectra_csv(spectra);
+    text = options.wanted.lines ? lines_csv(spectra) : spectra_csv(spectra);
   }
   if (verb.output.empty()) return print(text);
   refuse_strict(session);
@@ -99,8 +101,16 @@ void add_only(VerbOptions& options, const PsdVerb& verb) {
   const auto single = [&verb] {
     return verb.cross.empty() && verb.coherence.empty() && verb.spectrogram.empty();
   };
-  const auto of_table = [&verb] { return !verb.options.lines || verb.json; };
-  options.only("for spectra of single channels", single, {"--average"});
+  const auto of_table = [&verb] { return !verb.analysis.options.wanted.lines || verb.json; };
+  options.only("for spectra of single channels",
+               single,
+               {"--average",
+                "--data",
+                "--nominal-frequency",
+                "--unwrap",
+                "--frozen",
+                "--interpolated",
+                "--memory"});
   options.only("for spectra of single channels, and not with --plot",
                [&verb, single] { return single() && !verb.plot; },
                {"--lines"});
@@ -121,6 +131,9 @@ void add_only(VerbOptions& options, const PsdVerb& verb) {
 
 std::function<void()> psd_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<PsdVerb>();
+  CharacterizeOptions& analysis = verb->analysis.options;
+  analysis.spectrum_bins = 0;
+  analysis.wanted.lines = false;
   options
       .add_text(
           "LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
@@ -132,12 +145,11 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
   Option plot = options.add_flag("--plot", verb->plot, "a plot for the terminal instead of CSV");
   plot.excludes(json);
   options.add_flag("--lines",
-                   verb->options.lines,
+                   analysis.wanted.lines,
                    "list the spectral lines (with --json: in addition to the spectra)");
-  add_spectrum_options(
-      options, verb->options.spectrum, verb->options.segment_s, verb->options.quarter_segments);
+  add_spectrum_options(options, analysis.spectrum, analysis.segment_s, analysis.quarter_segments);
   options.add_enum("--average",
-                   verb->options.average,
+                   analysis.average,
                    "mean of the segments, or their median without its bias: bursts do not count "
                    "(default: mean)");
   const Option cross = options
@@ -163,7 +175,8 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
           "N|TIME",
           [verb = verb.get()](const std::string& text) {
             verb->spectrogram = text;
-            read_segment(text, verb->options.spectrum, verb->options.segment_s);
+            CharacterizeOptions& analysis = verb->analysis.options;
+            read_segment(text, analysis.spectrum, analysis.segment_s);
           },
           "the spectrum of every segment of this length by itself, instead of their average")
       .excludes(cross)
@@ -171,14 +184,15 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
       .excludes(plot);
   options.add_count(
       "--log-bins",
-      verb->options.bins,
+      analysis.spectrum_bins,
       "average into at most N bins of a logarithmic frequency axis (default: 0, do not)",
       0,
       1000000);
+  add_reading_options(options, session, analysis.reading);
+  add_data_options(options, verb->analysis);
   add_only(options, *verb);
-  add_reading_options(options, session, verb->options.reading);
   return [&session, verb] {
-    verb->options.reading.hash = verb->json;  // only the document states it
+    verb->analysis.options.reading.hash = verb->json;  // only the document states it
     run_psd(session, *verb);
   };
 }

@@ -9,7 +9,7 @@
 namespace libchar {
 namespace {
 
-WelchOptions segments_of(const LogSpectraOptions& options, double rate_hz) {
+WelchOptions segments_of(const CharacterizeOptions& options, double rate_hz) {
   WelchOptions welch = options.spectrum;
   welch.threads = options.reading.threads;
   if (welch.segment == 0 && options.segment_s > 0)
@@ -22,7 +22,7 @@ WelchOptions segments_of(const LogSpectraOptions& options, double rate_hz) {
 LogCrossSpectrum log_cross_spectrum(const std::string& path,
                                     const std::string& first,
                                     const std::string& second,
-                                    const LogSpectraOptions& options,
+                                    const CharacterizeOptions& options,
                                     Progress& progress) {
   ReadOptions reading = options.reading;
   if (first == second)
@@ -48,7 +48,7 @@ LogCrossSpectrum log_cross_spectrum(const std::string& path,
 }
 
 LogSpectrograms log_spectrograms(const std::string& path,
-                                 const LogSpectraOptions& options,
+                                 const CharacterizeOptions& options,
                                  Progress& progress) {
   Recording recording = read_recording(path, options.reading, progress);
   const double rate_hz = known_rate_hz(recording.info);

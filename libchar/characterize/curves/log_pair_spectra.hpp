@@ -20,7 +20,7 @@ struct LogCrossSpectrum {
 LogCrossSpectrum log_cross_spectrum(const std::string& path,
                                     const std::string& first,
                                     const std::string& second,
-                                    const LogSpectraOptions& options,
+                                    const CharacterizeOptions& options,
                                     Progress& progress = no_progress());
 
 struct LogSpectrograms {
@@ -31,7 +31,7 @@ struct LogSpectrograms {
 
 /// With segments of `options.spectrum.segment` samples or `options.segment_s`. Reads the log whole. Throws as read_recording and spectrogram.
 LogSpectrograms log_spectrograms(const std::string& path,
-                                 const LogSpectraOptions& options,
+                                 const CharacterizeOptions& options,
                                  Progress& progress = no_progress());
 
 }  // namespace libchar

@@ -15,6 +15,7 @@
 #include "libchar/allan/ten_a_decade.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -28,8 +29,6 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kPlottedBins =
-    400;  // enough for a log–log plot, small enough for a page of many channels
 constexpr std::size_t kFewestForMotion = 2048;
 constexpr std::uint64_t kLongForAll = std::uint64_t{1} << 17U;  // of which every m is asked for
 
@@ -40,12 +39,6 @@ Mixture white_alone(const AllanCurve& curve) {
   if (!curve.points.empty())
     theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
   return theta;
-}
-
-/// Of a log of more than a leaf.
-bool whole_spectrum(const CharacterizeOptions& options) {
-  return options.quarter_segments ||
-         (options.data == SampleKind::phase && !why_not_in_leaves(options).empty());
 }
 
 // Octaves of the overlapping deviation: what the streaming form gives.
@@ -100,7 +93,8 @@ class Finish {
   void doubt_frequency(ChannelResult& result) const;
   void doubt_rate(ChannelResult& result, double rate_hz) const;
   std::optional<EventSeries> series(double rate_hz) const;
-  bool is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s);
+  void find_motion(ChannelResult& result, double rate_hz);
+  bool is_at_rest(ChannelResult& result, double rate_hz);
   void find_digital(ChannelResult& result, double rate_hz) const;
   void fit(const AllanCurve& octaves, double rate_hz, ChannelResult& result);
   NoiseFit fit_of_kept(const AllanCurve& octaves, double rate_hz, FitOptions options) const;
@@ -257,7 +251,6 @@ NoiseFit Finish::fit_of_sums(const AllanCurve& octaves, double rate_hz, FitOptio
 
 // To be fitted, and no clock or counter: the result says which.
 bool Finish::is_noise(ChannelResult& result) const {
-  if (!wants_fit()) return false;
   if (options_.data == SampleKind::phase) return true;  // the phase of a clock does rise
   if (found_.signs.counter.empty()) return true;
   result.findings.push_back(finding("no_fit", "no noise fit: the channel " + found_.signs.counter));
@@ -271,15 +264,18 @@ std::optional<EventSeries> Finish::series(double rate_hz) const {
   return is_whole() ? event_series(kept_, rate_hz) : read_.sums.record.plain.means.series(rate_hz);
 }
 
+void Finish::find_motion(ChannelResult& result, double rate_hz) {
+  if (options_.data != SampleKind::rate || !options_.fit.remedies) return;
+  series_ = series(rate_hz);
+  if (!series_) return;
+  result.motion = libchar::find_motion(*series_);
+  add_findings(result.motion.findings, result);
+}
+
 // A sensor that moves shows its motion and not its noise: no coefficients of a recording that moves
 // throughout, and a sentence where a stretch of it does.
-bool Finish::is_at_rest(ChannelResult& result, double rate_hz, std::vector<Interval>& moving_s) {
-  if (options_.data != SampleKind::rate || !options_.fit.remedies) return true;
-  series_ = series(rate_hz);
-  if (!series_) return true;
-  result.motion = find_motion(*series_);
-  add_findings(result.motion.findings, result);
-  moving_s = result.motion.moving_s;
+bool Finish::is_at_rest(ChannelResult& result, double rate_hz) {
+  find_motion(result, rate_hz);
   if (!result.motion.whole || !options_.wanted.fit) return true;
   result.findings.push_back(
       finding("no_fit", "no noise fit: the recording holds a signal throughout"));
@@ -309,8 +305,7 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
       result,
       "noise fit",
       [&] {
-        std::vector<Interval> moving_s;
-        if (!is_at_rest(result, rate_hz, moving_s)) return;
+        if (!is_at_rest(result, rate_hz)) return;
         FitOptions options = options_.fit;
         const std::string& unit = result.channel.unit;
         if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
@@ -322,7 +317,7 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
         const bool of_kept = is_whole() || read_.temperature;
         result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options)
                              : fit_of_sums(octaves, rate_hz, options);
-        result.fit->moving_s = std::move(moving_s);
+        result.fit->moving_s = result.motion.moving_s;
         doubt_digital(result.digital, *result.fit);
       },
       "no_fit");
@@ -332,11 +327,10 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
 void Finish::curve_and_fit(ChannelResult& curve, ChannelResult& result, double rate_hz) {
   AllanCurve octaves;
   bool there = false;
-  if (wants_fit())
-    attempt(curve, "Allan deviation", [&] {
-      octaves = this->octaves(rate_hz);
-      there = true;
-    });
+  attempt(curve, "Allan deviation", [&] {
+    octaves = this->octaves(rate_hz);
+    there = true;
+  });
   parallel::both(
       [&] {
         if (there) add_curves(octaves, rate_hz, curve);
@@ -346,18 +340,26 @@ void Finish::curve_and_fit(ChannelResult& curve, ChannelResult& result, double r
 
 void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
   const auto make = [&] {
+    if (options_.average == SegmentAverage::median)
+      return median_welch(kept_, rate_hz, options_.spectrum);
     if (is_whole()) return welch(kept_, rate_hz, options_.spectrum, &workspace_.welch);
-    if (!kept_.empty() && whole_spectrum(options_))
+    if (spectrum_of_all(options_))
       return welch_using_up(std::move(kept_), rate_hz, options_.spectrum, &workspace_.welch);
     if (read_.spectrum) return read_.spectrum->finish(rate_hz);
     const WelchOptions options = streamed_spectrum(options_.spectrum);
     return WelchStream(options, read_.sums.spectrum).finish(rate_hz);
   };
   attempt(result, "spectrum", [&] {
-    const Spectrum spectrum = make();
-    const Quantization grid = quantization();
-    parallel::both([&] { result.lines = find_lines(spectrum, 1e-3, grid); },
-                   [&] { result.spectrum = log_binned(spectrum, kPlottedBins); });
+    Spectrum spectrum = make();
+    const std::size_t bins = detail::in_memory(options_.spectrum_bins);
+    parallel::both(
+        [&] {
+          if (options_.wanted.lines) result.lines = find_lines(spectrum, 1e-3, quantization());
+        },
+        [&] {
+          if (bins > 0) result.spectrum = log_binned(spectrum, bins);
+        });
+    if (bins == 0) result.spectrum = std::move(spectrum);
     if (options_.spectrum.segment == 0 && !is_whole() && !options_.quarter_segments)
       result.spectrum.notes.push_back(streamed_segment_note());
   });
@@ -369,12 +371,18 @@ void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
 void Finish::finish(ChannelResult& result, double rate_hz) {
   ChannelResult curve, spectrum;
   const std::size_t before = result.findings.size();
-  const bool last = !is_whole() && whole_spectrum(options_);
+  const bool last = !is_whole() && spectrum_of_all(options_);
   parallel::isolated([&] {
-    parallel::both([&] { curve_and_fit(curve, result, rate_hz); },
-                   [&] {
-                     if (options_.wanted.spectrum && !last) add_spectrum(spectrum, rate_hz);
-                   });
+    parallel::both(
+        [&] {
+          if (wants_fit())
+            curve_and_fit(curve, result, rate_hz);
+          else if (options_.wanted.spectrum && found_.signs.counter.empty())
+            find_motion(result, rate_hz);
+        },
+        [&] {
+          if (options_.wanted.spectrum && !last) add_spectrum(spectrum, rate_hz);
+        });
     if (options_.wanted.spectrum && last) add_spectrum(spectrum, rate_hz);
   });
   result.allan = std::move(curve.allan);
@@ -512,9 +520,11 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
 
 std::string what_needs_all_samples(const CharacterizeOptions& options) {
   if (!options.temperature.empty()) return "a correction for temperature";
-  if (options.wanted.spectrum && whole_spectrum(options))
+  if (options.wanted.spectrum && spectrum_of_all(options))
     return options.quarter_segments ? "a spectrum of segments of a quarter of the record"
-                                    : "a spectrum of a phase with these segments";
+           : options.average == SegmentAverage::median
+               ? "a median of segments"
+               : "a spectrum of a phase with these segments";
   if (!options.wanted.allan) return "";
   std::vector<DeviationType> types = options.more_types;
   types.insert(types.begin(), options.allan.type);

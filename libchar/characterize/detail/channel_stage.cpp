@@ -14,7 +14,7 @@ ChannelStage::ChannelStage(const CharacterizeOptions& options,
     : options_(&options),
       workspace_(&workspace),
       keep_(keep),
-      in_turn_(options.data != SampleKind::phase && !why_not_in_leaves(options).empty()),
+      in_turn_(!spectrum_of_all(options) && !why_not_in_leaves(options).empty()),
       stage_(std::make_unique<LeafStage>(options, workspace.welch)),
       tree_(*stage_) {
   meters_.traces = options.wanted.quality;

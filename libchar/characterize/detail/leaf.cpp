@@ -35,8 +35,7 @@ void unwrap_by(double period, std::span<double> samples) {
 
 /// What no leaf is asked for must not be refused.
 WelchOptions spectrum_in_leaves(const CharacterizeOptions& options) {
-  const bool possible = options.wanted.spectrum && why_not_in_leaves(options).empty();
-  return streamed_spectrum(possible ? options.spectrum : WelchOptions{});
+  return streamed_spectrum(why_not_in_leaves(options).empty() ? options.spectrum : WelchOptions{});
 }
 
 }  // namespace
@@ -90,10 +89,16 @@ std::string why_not_in_leaves(const CharacterizeOptions& options) {
   return WelchParts::why_not(streamed_spectrum(options.spectrum), kLeafSamples);
 }
 
+bool spectrum_of_all(const CharacterizeOptions& options) {
+  return options.quarter_segments || options.average == SegmentAverage::median ||
+         (options.data == SampleKind::phase && !why_not_in_leaves(options).empty());
+}
+
 LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace)
     : options_(&options),
       workspace_(&workspace),
-      wants_spectrum_(options.wanted.spectrum && why_not_in_leaves(options).empty()),
+      wants_spectrum_(options.wanted.spectrum && !spectrum_of_all(options) &&
+                      why_not_in_leaves(options).empty()),
       blocks_(PowerPart::kBlock, &workspace) {}
 
 WelchParts& LeafStage::spectrum() const {
@@ -149,7 +154,10 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
   const bool shares = wants_spectrum_ && wants_fit() && kind.whole &&
                       spectrum().shared_length() == PowerPart::kBlock;
   if (wants_spectrum_) sums.spectrum = spectrum().take(samples, shares ? &bins : nullptr);
-  if (!wants_fit()) return sums;
+  if (!wants_fit()) {
+    if (options_->wanted.spectrum) sums.record.plain.means = means_of_leaf(samples);
+    return sums;
+  }
   sums.record.plain = fitted_sums(samples, kind, blocks_, shares ? &bins : nullptr);
   kind.whole = false;
   if (clean) sums.record.cleaned = fitted_sums(cleaned, kind, blocks_);

@@ -46,6 +46,8 @@ ValueCensus census_of(const ChannelQuality& quality);
 inline constexpr std::uint64_t kStreamedSegment = std::uint64_t{1} << 16U;
 WelchOptions streamed_spectrum(WelchOptions options);
 std::string streamed_segment_note();
+/// A record of more than a leaf needs all of its samples at once for its spectrum.
+bool spectrum_of_all(const CharacterizeOptions& options);
 /// "" or why the spectrum is not one of leaves: its samples must come one leaf after the other.
 std::string why_not_in_leaves(const CharacterizeOptions& options);
 

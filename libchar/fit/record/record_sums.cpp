@@ -186,6 +186,12 @@ struct RecordStage {
 
 }  // namespace
 
+MeanMeter means_of_leaf(std::span<const double> leaf) {
+  MeanMeter means(kPerMean);
+  means.push(leaf);
+  return means;
+}
+
 FittedSums fitted_sums(std::span<const double> leaf,
                        const LeafKind& kind,
                        const BlockTransforms& blocks,
@@ -200,8 +206,7 @@ FittedSums fitted_sums(std::span<const double> leaf,
   }
   sums.bins = (shared != nullptr ? *shared : own).finish(kind.last);
   sums.allan = sums_of_pieces(leaf, sums.pieces);
-  sums.means = MeanMeter(kPerMean);
-  sums.means.push(leaf);
+  sums.means = means_of_leaf(leaf);
   return sums;
 }
 

@@ -59,6 +59,7 @@ struct LeafKind {
   bool bridged = true;  ///< short runs of missing samples are filled for the transforms
   bool whole = false;   ///< none is missing
 };
+MeanMeter means_of_leaf(std::span<const double> leaf);
 /// `shared`: has seen the blocks of the leaf, which is whole, already. Else `blocks` transforms
 /// them: so they have the same bits whether a spectrum shares them or not.
 FittedSums fitted_sums(std::span<const double> leaf,

@@ -1,6 +1,7 @@
 #include "libchar/log/detail/line_watch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/log/quality.hpp"
@@ -14,7 +15,7 @@ void LineWatch::take(double x, bool direct, std::uint64_t at) {
     second_ = x;
     direct_ = direct;
   }
-  if (n_ > 1) runs_.push(direct && pair_ && on_line(before_, last_, x), at);
+  if (n_ > 1) flag(before_, last_, x, direct && pair_, at);
   pair_ = direct && n_ > 0;
   before_ = last_;
   last_ = x;
@@ -36,7 +37,8 @@ LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
   }
   bool out = (found[0] | found[1] | found[2] | found[3]) != 0;
   for (; i < n; ++i)
-    out |= on_line(x[i - 2], x[i - 1], x[i]) && on_line(x[i - 3], x[i - 2], x[i - 1]);
+    out |= on_line(x[i - 2], x[i - 1], x[i], kStraight) &&
+           on_line(x[i - 3], x[i - 2], x[i - 1], kStraight);
   return out;
 }
 constexpr InLanes<any_two_lanes> any_two;
@@ -46,7 +48,13 @@ void LineWatch::push(std::span<const double> x,
                      std::size_t i,
                      std::uint64_t at) {
   const bool whole = starts == nullptr || (starts[i] == 0 && starts[i - 1] == 0);
-  runs_.push(whole && on_line(x[i - 2], x[i - 1], x[i]), at + i);
+  flag(x[i - 2], x[i - 1], x[i], whole, at + i);
+}
+
+void LineWatch::flag(double a, double b, double c, bool whole, std::uint64_t at) {
+  const bool straight = whole && on_line(a, b, c, kStraight);
+  runs_.push(straight, at);
+  exact_.push(straight && on_line(a, b, c, kExactly), at);
 }
 
 // A lone flag is none: most stretches of a noise are passed over at once.
@@ -62,7 +70,8 @@ void LineWatch::block(std::span<const double> x, const unsigned char* starts, st
   while (i < x.size()) {
     const std::size_t n = std::min(kStretch, x.size() - i);
     const bool none = !any_two(&x[i], n);
-    if (none) runs_.push_without(n - 1);
+    if (none)
+      for (FlagRuns* runs : {&runs_, &exact_}) runs->push_without(n - 1);
     for (std::size_t k = none ? n - 1 : 0; k < n; ++k) push(x, starts, i + k, at);
     i += n;
   }
@@ -80,12 +89,15 @@ void LineWatch::join(const LineWatch& later, bool direct, std::uint64_t at) {
   if (own == 0) {  // nothing but missing samples so far
     *this = later;
     runs_ = FlagRuns(kFewest);
-    return runs_.join(later.runs_, at, 2);
+    exact_ = FlagRuns(2);
+    runs_.join(later.runs_, at, 2);
+    return exact_.join(later.exact_, at, 2);
   }
   coarse_ = coarse_ || later.coarse_;
   take(later.first_, direct, at);
   if (later.n_ > 1) take(later.second_, later.direct_, at + 1);
   runs_.join(later.runs_, at, 2);
+  exact_.join(later.exact_, at, 2);
   n_ = own + later.n_;
   if (later.n_ > 1) {
     before_ = later.before_;
@@ -96,11 +108,12 @@ void LineWatch::join(const LineWatch& later, bool direct, std::uint64_t at) {
 
 bool LineWatch::has_chance_lines() const {
   const std::vector<double>& closed = runs_.closed();
-  return !closed.empty() && 40 * (closed[1] + closed[2]) > static_cast<double>(n_);
+  const double filled = exact_.closed().empty() ? 0 : exact_.closed()[2];
+  return !closed.empty() && 40 * (closed[1] + closed[2] - filled) > static_cast<double>(n_);
 }
 
+// Runs of two and three say how chance goes on.
 std::uint64_t LineWatch::least_run() const {
-  if (coarse_) return 0;
   constexpr double kChance = 1e-3;
   const std::vector<double>& closed = runs_.closed();
   if (closed.empty()) return 0;
@@ -114,6 +127,31 @@ std::uint64_t LineWatch::least_run() const {
   return 0;
 }
 
+// Lone flags say which share of the straight ones chance makes exact; runs of two and more of them are as many as a
+// Poisson variable of that mean reaches once in 10^4 records (Chernoff's bound) or less.
+std::uint64_t LineWatch::least_exact_run() const {
+  constexpr double kLogChance = -9.2;
+  const std::vector<double>&straight = runs_.closed(), &exact = exact_.closed();
+  const double lone = straight.empty() ? 0 : straight[1];
+  const double share = ((exact.empty() ? 0 : exact[1]) + 1) / (lone + 100);
+  for (std::uint64_t length = 2; length < kFewest; ++length) {
+    const double mean = static_cast<double>(runs_.from_length(length).second) *
+                        std::pow(share, static_cast<double>(length));
+    const auto count = static_cast<double>(exact_.from_length(length).first);
+    if (count > mean && count - mean - count * std::log(count / mean) < kLogChance) return length;
+  }
+  return 0;
+}
+
+LineWatch::Found LineWatch::found() const {
+  if (coarse_) return {};
+  const Found straight{least_run(), &runs_}, exact{least_exact_run(), &exact_};
+  const auto on_lines = [](const Found& one) {
+    return one.least_run == 0 ? 0 : one.runs->from_length(one.least_run).second;
+  };
+  return on_lines(exact) > on_lines(straight) ? exact : straight;
+}
+
 void forget_frozen(std::span<double> samples, std::uint64_t fewest) {
   for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
     const double value = samples[from];
@@ -123,16 +161,22 @@ void forget_frozen(std::span<double> samples, std::uint64_t fewest) {
   }
 }
 
-void forget_lines(std::span<double> samples, std::uint64_t fewest) {
+static void forget_lines_of(std::span<double> samples, std::uint64_t fewest, double share) {
   for (std::size_t from = 0, to = 0; from + 2 < samples.size(); from = to - 1) {
     double a = samples[from], b = samples[from + 1];
-    for (to = from + 2; to < samples.size() && on_line(a, b, samples[to]); ++to) {
+    for (to = from + 2; to < samples.size() && on_line(a, b, samples[to], share); ++to) {
       a = b;
       b = samples[to];
     }
     if (to - from >= fewest)
       for (double& x : samples.subspan(from + 1, to - from - 2)) x = kMissing;
   }
+}
+
+void forget_lines(std::span<double> samples, std::uint64_t fewest) {
+  constexpr std::uint64_t kLong = LineWatch::kFewest + 2;
+  if (fewest < kLong) forget_lines_of(samples, fewest, kExactly);
+  forget_lines_of(samples, std::max(fewest, kLong), kStraight);
 }
 
 }  // namespace libchar::detail

@@ -8,11 +8,14 @@
 
 namespace libchar::detail {
 
-/// The step to `c` goes on as that to `b`, within a tenth, which leaves room for the last digit. Of white noise 1.8 %
-/// of the samples do: the ratio of its steps is Cauchy about -1/2 with the scale sqrt(3)/2.
-inline bool on_line(double a, double b, double c) {
+/// How straight: a tenth leaves room for the last digit, and 1.8 % of the samples of white noise pass (the ratio of its
+/// steps is Cauchy about -1/2 with the scale sqrt(3)/2); a thousandth needs digits, and tells lines of two steps.
+constexpr double kStraight = 0.1, kExactly = 1e-3;
+
+/// The step to `c` goes on as that to `b`, within this share of it.
+inline bool on_line(double a, double b, double c, double share) {
   const double step = b - a, bend = (c - b) - step;
-  return step != 0 && bend * bend <= 0.01 * (step * step);
+  return step != 0 && bend * bend <= share * share * (step * step);
 }
 
 class LineWatch {
@@ -22,22 +25,32 @@ class LineWatch {
   /// `direct`: the first sample of `later` follows directly. `at`: its part's begin in the record.
   void join(const LineWatch& later, bool direct, std::uint64_t at);
 
-  /// A run of one flag may be left out.
-  const FlagRuns& runs() const { return runs_; }
-  /// The least number of flags in a row that chance does not give in this record: runs of two and three say how
-  /// chance goes on. 0: there is no run so long.
-  std::uint64_t least_run() const;
+  /// Lines that chance does not give in this record, those of the kind that has more samples on them.
+  struct Found {
+    std::uint64_t least_run = 0;  ///< flags in a row; 0: there are none
+    const FlagRuns* runs = nullptr;
+  };
+  Found found() const;
+  /// Shorter runs of flags are told by exact lines.
+  static constexpr std::uint64_t kFewest = 6;
 
   static void layout(auto& at, auto& watch) {
     at.group(
         "lines of a channel", watch.n_, watch.before_, watch.last_, watch.first_, watch.second_);
     at(watch.pair_, watch.direct_, watch.coarse_);
     FlagRuns::layout(at, watch.runs_);
+    FlagRuns::layout(at, watch.exact_);
   }
-  void check(StateReader& from) const { runs_.check(from); }
+  void check(StateReader& from) const {
+    runs_.check(from);
+    exact_.check(from);
+  }
 
  private:
-  static constexpr std::uint64_t kFewest = 6, kEnough = 4096;
+  static constexpr std::uint64_t kEnough = 4096;
+  std::uint64_t least_run() const;
+  std::uint64_t least_exact_run() const;
+  void flag(double a, double b, double c, bool whole, std::uint64_t at);
   bool has_chance_lines() const;
   void take(double x, bool direct, std::uint64_t at);
   void push(std::span<const double> x,
@@ -51,7 +64,8 @@ class LineWatch {
   bool pair_ = false;              ///< the last one follows directly on that before
   bool direct_ = false;            ///< the second one on the first
   bool coarse_ = false;  ///< steps of a coarse grid are alike by chance: nothing is told from it
-  FlagRuns runs_{kFewest};
+  /// Of either straightness; a run of one flag may be left out.
+  FlagRuns runs_{kFewest}, exact_{2};
 };
 
 }  // namespace libchar::detail

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "libchar/characterize/curves/curve_document.hpp"
 #include "libchar/characterize/curves/model_curve.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/csv_cell.hpp"
 #include "libchar/report/detail/json_pieces.hpp"
@@ -67,14 +70,22 @@ Json allan_json(const std::vector<Channel>& channels,
 
 std::string spectra_csv(const LogSpectra& spectra) {
   std::string text = "frequency_hz";
-  for (const ChannelSpectrum& c : spectra.channels)
+  std::vector<double> axis;  // of channels with a rate of their own too
+  for (const ChannelResult& c : spectra.channels) {
     text += "," + csv_cell(fmt::format(
                       "{}[{}]", c.channel.name, spectrum_unit(c.spectrum.scaling, c.channel.unit)));
+    const std::vector<double> before = std::exchange(axis, {}), &own = c.spectrum.frequency_hz;
+    std::set_union(before.begin(), before.end(), own.begin(), own.end(), std::back_inserter(axis));
+  }
   text += "\n";
-  const std::vector<double>& frequency = spectra.channels.front().spectrum.frequency_hz;
-  for (std::size_t k = 0; k < frequency.size(); ++k) {
-    text += csv_cell(frequency[k]);
-    for (const ChannelSpectrum& c : spectra.channels) text += "," + csv_cell(c.spectrum.value[k]);
+  std::vector<std::size_t> next(spectra.channels.size());
+  for (const double frequency : axis) {
+    text += csv_cell(frequency);
+    for (std::size_t c = 0; c < next.size(); ++c) {
+      const Spectrum& own = spectra.channels[c].spectrum;
+      const bool has = next[c] < own.value.size() && own.frequency_hz[next[c]] == frequency;
+      text += has ? "," + csv_cell(own.value[next[c]++]) : ",";
+    }
     text += "\n";
   }
   return text;
@@ -82,7 +93,7 @@ std::string spectra_csv(const LogSpectra& spectra) {
 
 std::string lines_csv(const LogSpectra& spectra) {
   std::string text = "channel,unit,frequency_hz,amplitude,excess,width_hz\n";
-  for (const ChannelSpectrum& c : spectra.channels)
+  for (const ChannelResult& c : spectra.channels)
     for (const SpectralLine& line : c.lines)
       text += csv_line(c.channel.name,
                        c.channel.unit,
@@ -93,7 +104,7 @@ std::string lines_csv(const LogSpectra& spectra) {
   return text;
 }
 
-Json spectra_json(const LogSpectra& spectra, const LogSpectraOptions& options) {
+Json spectra_json(const LogSpectra& spectra, const CharacterizeOptions& options) {
   Json document;
   document["sides"] = name_of(options.spectrum.sides);
   document["scaling"] = name_of(options.spectrum.scaling);
@@ -103,12 +114,12 @@ Json spectra_json(const LogSpectra& spectra, const LogSpectraOptions& options) {
   document["detrend"] = name_of(options.spectrum.detrend);
   document["rate_hz"] = spectra.log.time.rate_hz;
   document["channels"] = Json::array();
-  for (const ChannelSpectrum& c : spectra.channels) {
+  for (const ChannelResult& c : spectra.channels) {
     SpectrumOfChannel one =
         spectrum_of_channel(c.channel, c.spectrum, spectrum_intervals(c.spectrum, 0.95));
-    one.with_lines = options.lines;
+    one.with_lines = options.wanted.lines;
     one.lines = c.lines;
-    one.findings = c.findings;
+    one.findings = findings_of(c);
     document["channels"].push_back(document_of(spectrum_channel_fields(), one));
   }
   return document;

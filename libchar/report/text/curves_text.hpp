@@ -29,7 +29,7 @@ std::string spectra_csv(const LogSpectra& spectra);
 /// channel,unit,frequency_hz,amplitude,excess,width_hz: one row per line.
 std::string lines_csv(const LogSpectra& spectra);
 /// Without the head of a document; lines where they were asked for.
-Json spectra_json(const LogSpectra& spectra, const LogSpectraOptions& options);
+Json spectra_json(const LogSpectra& spectra, const CharacterizeOptions& options);
 
 // Cornered hats and dynamic deviations as tables and documents (docs/json.md).
 

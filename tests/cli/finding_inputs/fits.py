@@ -125,9 +125,9 @@ def with_line(n=30000):
     return [v + 0.4 * math.sin(2 * math.pi * 13 * i / RATE) for i, v in enumerate(noise(n))]
 
 
-def fitted(name, values, **more):
+def fitted(name, values, made_by="fit", **more):
     """A record of one gyroscope, of which the fit finds something."""
-    return Input(gyro(name, values), made_by="fit", **more)
+    return Input(gyro(name, values), made_by=made_by, **more)
 
 
 def fitted_model(name, samples, **terms):
@@ -157,8 +157,8 @@ ONLY_VERIFY = dict.fromkeys(("allan", "psd", "fit"), "only --verify of character
 INPUTS = {
     "event": fitted("event", lambda: [v + (0.6 if i > 12000 else 0) for i, v in enumerate(noise(30000))]),
     "events_left_in": fitted("steps", lambda: steps(60000, 3000, 4)),
-    "motion": fitted("motion", motion, truth=N),
-    "moves_throughout": fitted("resonance", band_hump),
+    "motion": fitted("motion", motion, made_by="characterize", truth=N),
+    "moves_throughout": fitted("resonance", band_hump, made_by="characterize"),
     "heavy_tails": fitted("laplace", laplace),
     "high_passed": fitted("coupled", high_passed),
     "outliers_in_n": fitted("outliers", outliers),
@@ -186,10 +186,9 @@ INPUTS = {
     "reaches_zero": fitted_model("zero", 12000, white=0.02, flicker=0.01),
     "temperature": Input(raw("temperature", with_temperature), made_by="fit", analysis=("--temperature", "temp")),
     "noise_types": Input(raw("clock", clock_of("s", 0, 1e-9), rate=1), made_by="characterize",
-                         analysis=("--data", "phase")),
+                         analysis=("--data", "phase"), not_in={"psd": "it names no slopes"}),
     "frequency_mean": Input(raw("frequency", clock_of("Hz", 10e6, 1e-3), rate=1), made_by="characterize",
-                            analysis=("--data", "frequency"),
-                            not_in={"psd": "it takes samples for the quantity itself"}),
+                            analysis=("--data", "frequency")),
     "looks_integrated": Input(gyro("angle", integral), made_by="characterize",
                               not_in={"psd": "it fits nothing"}),
     "no_fit": Input(raw("no_fit", hardly_there), made_by="characterize"),
