@@ -1044,7 +1044,8 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   }
   judge_held(q, rate_hz, out);
   if (judge_zeros(q, out)) return;
-  judge_runs(q, rate_hz, out);
+  if (!has(out, "much_saturated"))
+    judge_runs(q, rate_hz, out);  // it stands at the end of the range
   judge_lines(q, rate_hz, out);
 }
 

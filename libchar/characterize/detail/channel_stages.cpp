@@ -17,6 +17,7 @@ namespace {
 // What the leaves of a channel take: the one that is filled, what is made of it, and the nodes of
 // the tree.
 constexpr std::uint64_t kChannelBytes = std::uint64_t{24} << 20U;
+constexpr std::uint64_t kSpectrumBytes = std::uint64_t{14} << 20U;  // where nothing else is made
 constexpr std::uint64_t kMostOfPass = std::uint64_t{192} << 20U;
 
 constexpr std::size_t kFittedAtOnce = 2;
@@ -51,7 +52,9 @@ std::size_t ChannelStages::channels_at_once(const LogInfo& so_far) const {
   const std::size_t channels = so_far.channels.size();
   if (all_ || !needs_all_samples_.empty()) return channels;
   const std::uint64_t most_rows = so_far.samples > 0 ? so_far.samples : so_far.bytes / channels;
-  const std::uint64_t each = std::min(kChannelBytes, (most_rows + 1) * sizeof(double));
+  const bool fitted = options_.wanted.fit || options_.wanted.allan;
+  const std::uint64_t each =
+      std::min(fitted ? kChannelBytes : kSpectrumBytes, (most_rows + 1) * sizeof(double));
   const std::uint64_t some = std::min(options_.memory_bytes, kMostOfPass) / each;
   return std::clamp<std::size_t>(detail::in_memory(some), 1, channels);
 }

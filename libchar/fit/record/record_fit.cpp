@@ -76,12 +76,15 @@ void take_out_outliers(const std::optional<OutlierVariance>& outliers,
   white.relative_sd *= wider;
   fit.covariance[kWhite][kWhite] += 4 * more * more;
   fit.theta[kWhite] *= share * share;
-  fit.findings.push_back(
-      finding("outliers_in_n",
-              fmt::format("Outliers too small to be left out one by one add {} to N: N is that of "
-                          "the Gaussian core of the samples.",
-                          percent_text(1 / share - 1)),
-              "small outliers were taken out of N"));
+  constexpr double kNoticeable = 0.1;  // of the standard deviation of N
+  const bool noticeable = 1 / share - 1 > kNoticeable * white.relative_sd;
+  if (noticeable)
+    fit.findings.push_back(finding(
+        "outliers_in_n",
+        fmt::format("Outliers too small to be left out one by one add {} to N: N is that of "
+                    "the Gaussian core of the samples.",
+                    percent_text(1 / share - 1)),
+        "small outliers were taken out of N"));
   white.value = core;
 }
 

@@ -54,6 +54,7 @@ std::optional<Contradiction> worst_contradiction(const NoiseFit& fit, const Alla
     const auto m = static_cast<double>(point.m);
     const double model = std::sqrt(shaped_allan_variance(fit, m, allan.dt_s));
     const Interval interval = chi_square_interval(point.deviation, point.edf, kConfidence);
+    if (!std::isfinite(model)) continue;  // a shape far beyond the band that gave it
     const double ratio = model / point.deviation;
     if (model <= interval.high || ratio < kRelevant || (worst && ratio <= worst->ratio)) continue;
     worst =
