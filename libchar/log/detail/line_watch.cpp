@@ -24,16 +24,17 @@ void LineWatch::take(double x, bool direct, std::uint64_t at) {
 
 /// Whether two neighbours of x[0..n) have the flag, the one before x[0] among them; x[-3] can be read.
 LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
+  constexpr double kSquare = kStraight * kStraight;
   Four any = {};
-  auto found = any != any;
+  auto found = any != any, before = found;
+  before[3] = on_line(x[-3], x[-2], x[-1], kStraight) ? -1 : 0;
   std::size_t i = 0;
   for (; i + 4 <= n; i += 4) {
-    const Four a = LIBCHAR_FOUR(x + i - 3), b = LIBCHAR_FOUR(x + i - 2),
-               c = LIBCHAR_FOUR(x + i - 1), d = LIBCHAR_FOUR(x + i);
-    const Four first = b - a, next = c - b, last = d - c;
-    const Four bend = next - first, more = last - next;
-    found |= (bend * bend <= 0.01 * (first * first)) & (more * more <= 0.01 * (next * next)) &
-             (first != 0.0) & (next != 0.0);
+    const Four a = LIBCHAR_FOUR(x + i - 2), b = LIBCHAR_FOUR(x + i - 1), c = LIBCHAR_FOUR(x + i);
+    const Four step = b - a, bend = (c - b) - step;
+    const auto flag = (bend * bend <= kSquare * (step * step)) & (step != 0.0);
+    found |= flag & __builtin_shufflevector(before, flag, 3, 4, 5, 6);
+    before = flag;
   }
   bool out = (found[0] | found[1] | found[2] | found[3]) != 0;
   for (; i < n; ++i)

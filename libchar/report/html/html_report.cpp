@@ -437,15 +437,17 @@ std::string next_part(const std::vector<std::string>& commands) {
   return out.empty() ? "" : "<h3>What next</h3>\n<pre class=\"next\">" + out + "</pre>\n";
 }
 
+// First the answer: a headline, the numbers of every channel, their curves. The same in words is folded.
 std::string overview(const CharacterizationView& view) {
   std::string out = fmt::format("<section id=\"overview\">\n<p class=\"verdict {}\">{} ",
                                 name_of(view.rating),
                                 rating_badge(view.rating)) +
-                    html_text(view.verdict) + "</p>\n" + facts(view) + sentences(view);
+                    html_text(view.verdict) + "</p>\n" + facts(view);
+  const std::size_t channels = view.channels.size();
+  out += channels > kUnfoldedRows ? folded("All coefficients in a table", overview_table(view))
+                                  : overview_table(view);
+  out += channels > 1 ? folded("Each channel in words", sentences(view)) : sentences(view);
   for (const ChannelGroup& group : view.groups) out += group_part(view, group);
-  out += folded("All coefficients in a table",
-                overview_table(view),
-                view.channels.size() > 1 && view.channels.size() <= kUnfoldedRows);
   return out + next_part(view.result->next) + "</section>\n";
 }
 
