@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/report/text/curves_text.hpp"
 #include "tests/support/noise.hpp"
@@ -91,6 +92,9 @@ TEST_CASE("log_spectra: a log without a rate, and one too short, are refused in 
   CHECK_THROWS_WITH(log_spectra(path), Contains("rate"));
   CharacterizeOptions options = at_100_hz();
   options.spectrum.segment = 8192;
+  CHECK_THAT(log_spectra(path, options).notes.at(0),
+             Contains("x: the segment was shortened from 8192"));
+  std::ofstream(path) << "x\n1\n2\n1\n3\n2\n";
   CHECK_THROWS_WITH(log_spectra(path, options),
                     Contains("no channel gives a spectrum: x: ") && !Contains("E0401"));
 }
@@ -122,4 +126,51 @@ TEST_CASE(
   options.spectrum.segment = 65536;
   CHECK(log_spectra(path, options).channels[0].spectrum.value ==
         streamed.channels[0].spectrum.value);
+}
+
+TEST_CASE("log_spectra: motion is said of a record of one leaf and of one of two") {
+  for (const std::size_t rows : {std::size_t{30000}, (std::size_t{1} << 20U) + 30000}) {
+    test::NoiseSource source(rows, 100, 5);
+    std::vector<double> x = source.record(1e-2, 0, 0);
+    CharacterizeOptions options = at_100_hz();
+    Recording recording;
+    recording.info.time.rate_hz = 100;
+    recording.info.channels.push_back({"x", "deg/s"});
+    recording.samples = {x};
+    const auto moves = [&] {
+      return has(findings_of(log_spectra(view_of(recording), options).channels.at(0)), "motion");
+    };
+    INFO(rows << " rows");
+    CHECK_FALSE(moves());
+    for (std::size_t i = rows / 2; i < rows / 2 + rows / 20; ++i)
+      recording.samples[0][i] += 3 * std::sin(0.05 * static_cast<double>(i));
+    CHECK(moves());
+    options.still.search = true;
+    CHECK_FALSE(moves());
+  }
+}
+
+TEST_CASE("log_spectra: a channel slower than its table has an axis of its own") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "log.csv").string();
+  test::NoiseSource source(kLogRows, 100, 5);
+  const std::vector<double> noise = source.record(1e-2, 0, 0);
+  std::ofstream out(path);
+  out << "t[s],x[V],slow[V]\n";
+  for (std::size_t i = 0; i < kLogRows; ++i) {
+    out << static_cast<double>(i) / 100 << "," << noise[i] << ",";
+    if (i % 8 == 0) out << noise[i];
+    out << "\n";
+  }
+  out.close();
+  CharacterizeOptions options;
+  options.spectrum_bins = 0;
+  const LogSpectra spectra = log_spectra(path, options);
+  REQUIRE(spectra.channels.size() == 2);
+  CHECK(spectra.channels[0].spectrum.frequency_hz.back() == Approx(50));
+  CHECK(spectra.channels[1].spectrum.frequency_hz.back() == Approx(6.25));
+  const std::string csv = spectra_csv(spectra);
+  const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
+  CHECK(last.starts_with("50,"));
+  CHECK(last.ends_with(",\n"));
 }

@@ -100,6 +100,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
   const Characterization result = characterize(verb.log, options, session.terminal);
   session.terminal.clear();
   report_warnings(session, result.log);
+  if (result.still) session.terminal.note(printable(result.still->sentence));
   std::vector<Channel> channels;
   std::vector<AllanCurve> curves;
   std::vector<std::vector<Finding>> known, findings;  // a channel; a curve
@@ -176,13 +177,14 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
       .excludes(dynamic);
   dynamic.excludes(hat).excludes(pairs);
   add_reading_options(options, session, verb->analysis.options.reading);
+  add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   verb->analysis.several_types = true;
   add_allan_options(options, verb->analysis);
   options.only(
       "without --hat, --hat-pairs and --dynamic",
       [verb = verb.get()] { return !verb->hat && !verb->hat_of_differences && !verb->dynamic; },
-      {"--unwrap", "--frozen", "--interpolated", "--memory"});
+      {"--still", "--unwrap", "--frozen", "--interpolated", "--memory"});
   return [&session, verb] {
     verb->analysis.options.reading.hash = verb->json;  // only the document states it
     run_allan(session, *verb);

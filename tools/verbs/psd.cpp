@@ -107,6 +107,7 @@ void add_only(VerbOptions& options, const PsdVerb& verb) {
                {"--average",
                 "--data",
                 "--nominal-frequency",
+                "--still",
                 "--unwrap",
                 "--frozen",
                 "--interpolated",
@@ -175,8 +176,8 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
           "N|TIME",
           [verb = verb.get()](const std::string& text) {
             verb->spectrogram = text;
-            CharacterizeOptions& analysis = verb->analysis.options;
-            read_segment(text, analysis.spectrum, analysis.segment_s);
+            CharacterizeOptions& of_verb = verb->analysis.options;
+            read_segment(text, of_verb.spectrum, of_verb.segment_s);
           },
           "the spectrum of every segment of this length by itself, instead of their average")
       .excludes(cross)
@@ -189,6 +190,7 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
       0,
       1000000);
   add_reading_options(options, session, analysis.reading);
+  add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
   add_only(options, *verb);
   return [&session, verb] {

@@ -47,6 +47,7 @@ void add_notes(const std::vector<ChannelResult>& channels, std::vector<std::stri
 LogSpectra spectra_of(Characterization found) {
   known_rate_hz(found.log);
   LogSpectra out;
+  if (found.still) out.notes.push_back(found.still->sentence);
   for (ChannelResult& c : found.channels) {
     if (!c.spectrum.value.empty()) {
       out.channels.push_back(std::move(c));
