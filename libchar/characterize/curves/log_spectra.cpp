@@ -59,8 +59,7 @@ LogSpectra spectra_of(Characterization found) {
   }
   if (out.channels.empty())
     throw numeric_error("E0715", found.log.file)
-        .says("no channel gives a spectrum" + (out.notes.empty() ? "" : ": " + out.notes.front()))
-        .hint("try a shorter `segment`");
+        .says("no channel gives a spectrum" + (out.notes.empty() ? "" : ": " + out.notes.front()));
   add_notes(out.channels, out.notes);
   out.log = std::move(found.log);
   return out;
