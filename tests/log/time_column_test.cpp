@@ -254,6 +254,7 @@ TEST_CASE("an array without names is all channels, a first column that rises eve
   };
   CHECK(guesses({}) == std::vector<std::string>{"first column: rises evenly, kept as a channel "
                                                 "(`time_column` c0 takes it as time)"});
+  CHECK(test::read_rows("npy", test::fixture("npy/c_order.npy"), {}).info.time.candidate == "c0");
   ReadOptions options;
   options.rate_hz = 100;  // who knows the rate looks for no stamps
   CHECK(guesses(options).empty());

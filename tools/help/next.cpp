@@ -135,7 +135,12 @@ std::string mended_command(const Session& session,
 std::vector<std::string> next_steps(const Session& session,
                                     const Characterization& result,
                                     const std::string& folder) {
-  if (!(result.log.time.rate_hz > 0)) return {command_again(session, " --rate RATE", folder)};
+  const TimeBase& time = result.log.time;
+  if (!(time.rate_hz > 0))
+    return {
+        command_again(session,
+                      time.candidate.empty() ? " --rate RATE" : " --time-column " + time.candidate,
+                      folder)};
   const std::vector<Finding> findings = findings_of(result);
   std::vector<std::string> out;
   if (std::string mended = mended_command(session, findings, folder); !mended.empty())

@@ -63,8 +63,15 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
                        info.rows == 1 ? "one row" : fmt::format("{} rows", info.rows),
                        info.rows == 1 ? "gives" : "give");
   if (info.time.rate_hz <= 0)
-    return fmt::format(
-        "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags);
+    return info.time.candidate.empty()
+               ? fmt::format(
+                     "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n",
+                     log,
+                     flags)
+               : fmt::format("  next: sensorchar inspect {}{} --time-column {}\n",
+                             log,
+                             flags,
+                             info.time.candidate);
   const bool hopeless = std::all_of(
       inspection.quality.begin(), inspection.quality.end(), [](const libchar::ChannelQuality& q) {
         return libchar::has(q.findings, "constant") || libchar::has(q.findings, "no_value");

@@ -415,6 +415,7 @@ std::optional<std::size_t> column_that_rises(const TableFront& table,
   const bool counter = usual_step(values) == 1 &&
                        values.back() - values.front() == static_cast<double>(values.size() - 1);
   if (counter || !table.text) {
+    if (!counter) info.time.candidate = "c0";
     info.guesses.push_back(
         fmt::format("first column: {}, kept as a channel (`time_column` c0 takes it as time)",
                     counter ? "counts the rows by ones" : "rises evenly"));
