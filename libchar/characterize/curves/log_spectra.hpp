@@ -11,7 +11,7 @@ namespace libchar {
 struct LogSpectra {
   LogInfo log;
   std::vector<ChannelResult> channels;  ///< those that give a spectrum
-  std::vector<std::string> notes;       ///< "gyro_x: …": of single channels, and why one is missing
+  std::vector<std::string> notes;  ///< "gyro_x: …": of single channels, and why one is missing
 };
 
 /// `characterize` of spectra alone, lines where `wanted.lines` asks for them. Of the options `reading` (its threads
