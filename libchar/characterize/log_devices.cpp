@@ -1,7 +1,6 @@
-#include "libchar/characterize/log_devices.hpp"
-
 #include <cmath>
 
+#include "libchar/characterize/curves/log_spectra.hpp"
 #include "libchar/core/refusal.hpp"
 
 namespace libchar {

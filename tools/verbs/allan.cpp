@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
+#include "libchar/characterize/curves/log_spectra.hpp"
 #include "libchar/characterize/judgement.hpp"
-#include "libchar/characterize/log_devices.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"

@@ -12,7 +12,6 @@
 
 #include "heap_meter.hpp"
 #include "libchar/benchmark/bench_document.hpp"
-#include "libchar/benchmark/bench_inputs.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/numeric/whole.hpp"
@@ -20,9 +19,8 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fusion/registry.hpp"
-#include "libchar/replay/sweep.hpp"
-#include "libchar/report/compare/bench_against.hpp"
-#include "libchar/report/compare/bench_report_files.hpp"
+#include "libchar/replay/replay.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 
@@ -323,11 +321,12 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
                     "simulated records of each signal (default: 60; quick: 12)",
                     2,
                     100000);
-  options.add_count("--samples",
-                    verb->samples,
-                    "of a record, at most (default: 200000, a design's 4000000; quick: 32768, 400000)",
-                    64,
-                    std::uint64_t{1} << 32U);
+  options.add_count(
+      "--samples",
+      verb->samples,
+      "of a record, at most (default: 200000, a design's 4000000; quick: 32768, 400000)",
+      64,
+      std::uint64_t{1} << 32U);
   options.add_count("--runs", verb->runs, "of each scene (default: 12; quick: 3)", 2, 10000);
   options.add_texts("--methods", verb->methods, "ways to get coefficients (default: all)")
       .separated_by_commas()
