@@ -8,7 +8,7 @@
 #include "libchar/characterize/compare/reported_characterization.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
-#include "libchar/report/json/json_report.hpp"
+#include "libchar/report/html/html_report.hpp"
 #include "reading_options.hpp"
 
 namespace sensorchar {

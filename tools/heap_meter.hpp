@@ -2,7 +2,7 @@
 // Counts the heap of this program, thread by thread: what an algorithm holds, whoever allocates it
 // (operator new, Eigen's malloc, Ceres).
 
-#include "libchar/core/process/heap_meter.hpp"
+#include "libchar/core/process/work.hpp"
 
 namespace sensorchar {
 

@@ -12,9 +12,7 @@
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/scene/recorded_scene.hpp"
 #include "libchar/scene/scene_file.hpp"
-#include "libchar/scene/text/preparation_check.hpp"
 #include "libchar/scene/text/typed_text.hpp"
 #include "reading_options.hpp"
 

@@ -13,7 +13,7 @@
 #include "libchar/core/process/version.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/report/json/replay_json.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "colour.hpp"
+#include "libchar/figure/draw_figure.hpp"
 #include "libchar/figure/make_figure.hpp"
-#include "libchar/figure/terminal_figure.hpp"
 #include "terminal.hpp"
 
 namespace sensorchar {

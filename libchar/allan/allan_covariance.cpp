@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 
 #include "libchar/allan/detail/equivalent_dof.hpp"

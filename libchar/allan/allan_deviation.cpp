@@ -16,7 +16,7 @@
 // detail/theo.cpp (Theo1, TheoBR, TheoH) and detail/time_interval.cpp (MTIE, TIE rms).
 //
 // Where samples of a rate are missing all of these but TOTDEV take means over what is present
-// (detail/missing_samples.cpp); of phase each term that touches a missing sample is dropped. Sums
+// (detail/kernels/present_points.cpp); of phase each term that touches a missing sample is dropped. Sums
 // run over fixed pieces of 65536 starts, added in order, so that the result does not depend on the
 // number of threads.
 
@@ -24,10 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/detail/anchored_phase.hpp"

@@ -32,7 +32,7 @@ struct AllanPoint {
   bool reliable = true;  ///< edf >= 5
   double inflation = 1;  ///< of the relative standard deviation, by missing samples
   double added = 0;      ///< to the variance by missing samples, as white noise would; taken off
-  double bias = 1;       ///< by which `add_intervals` has divided the variance (confidence.hpp)
+  double bias = 1;       ///< by which `add_intervals` has divided the variance (confidence.cpp)
 };
 
 struct AllanCurve {
@@ -67,7 +67,7 @@ struct AllanOptions {
 };
 
 /// Deviations of a record, with full overlap unless the options say otherwise. NaN = missing: means
-/// are over what is present of a window, more than half (detail/missing_samples.cpp); phase drops
+/// are over what is present of a window, more than half (detail/kernels/present_points.cpp); phase drops
 /// every term that touches a missing one.
 /// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two
 /// scale exactly. Throws Error(numeric) when no point is possible, naming the number of samples
@@ -79,5 +79,104 @@ AllanCurve allan_deviation(std::span<const double> record,
 /// What is left of a curve at octaves between `tau_min_s` and `tau_max_s`, as allan_deviation would
 /// leave it. Throws Error(numeric) when nothing is.
 AllanCurve limited(const AllanCurve& octaves, const AllanOptions& options);
+
+// How well the points of an Allan curve are known: chi-square intervals by exact degrees of freedom.
+
+/// Fills edf, ci68, ci95 and reliable of every point for the fitted mixture, and takes the bias
+/// that SP 1065 states for it out of the modified and Hadamard total deviations (`bias`: raw
+/// variance over this one). MTIE and TIE rms have no interval: edf stays 0.
+void add_intervals(AllanCurve& curve, const Mixture& theta);
+
+// Averaging times between the octaves of a curve, for plots: ten a decade.
+
+namespace detail {
+/// Factors between octaves whose terms start every sample: an `allan_deviation` that also takes them
+/// (more_factors) sums the record once for both.
+std::vector<std::uint64_t> exact_factors(const AllanOptions& options,
+                                         double dt_s,
+                                         std::uint64_t samples);
+}  // namespace detail
+
+/// Adds m = round(10^(i/10)) to a curve of octaves (oadev) of this record, between `tau_min_s` and
+/// `tau_max_s`. From m = 16 on terms start every m/16 to m/8 samples, which costs a hundredth of
+/// the degrees of freedom; m is rounded to that. Records longer than `exact_samples` get none below
+/// m = 64; records with missing samples exact ones, or none. `exact`: points at
+/// `exact_factors`, where they are there already.
+void add_ten_a_decade(std::span<const double> record,
+                      const AllanOptions& options,
+                      std::uint64_t exact_samples,
+                      AllanCurve& octaves,
+                      std::span<const AllanPoint> exact = {});
+
+// Deviations of single devices from their differences: the three-cornered hat, and the same for any number of them.
+
+/// What is known of a device at an averaging time.
+enum class HatStatus {
+  resolved,      ///< the variance is at least twice its standard deviation
+  not_resolved,  ///< positive, but less
+  negative,      ///< the others' noise hides it, or the devices are not independent
+};
+
+template <>
+inline constexpr auto enum_table<HatStatus> =
+    enum_words<HatStatus, "resolved not_resolved negative">;
+
+struct HatPoint {
+  std::uint64_t m = 0;
+  double tau_s = 0;
+  double variance = 0;     ///< squared unit of the statistic; may be negative
+  double variance_sd = 0;  ///< its standard deviation, for independent devices of white noise
+  double deviation = 0;    ///< root of the variance; NaN where that is negative
+  std::uint64_t terms = 0;
+  HatStatus status = HatStatus::resolved;
+};
+
+struct CorneredHat {
+  DeviationType type = DeviationType::oadev;
+  std::vector<std::vector<HatPoint>> devices;  ///< [device][averaging time]
+  std::vector<std::string> notes;
+};
+
+/// From n >= 3 records of one length that measure the same at the same time, each with noise of its
+/// own: variances of all pairwise differences, then least squares (cornered_hat.cpp). A statistic
+/// that is a mean square (all but MTIE, TheoBR and TheoH). Throws Error(usage) for others, fewer
+/// than three records, or lengths that differ; as allan_deviation.
+CorneredHat cornered_hat(std::span<const std::vector<double>> records,
+                         double dt_s,
+                         const AllanOptions& options = {});
+
+/// From three records of differences, a - b, b - c, c - a, each measured by itself: the covariances
+/// of the two that a device is in, in which the noise of the measurements drops out (Groslambert).
+/// Overlapping Allan variance only.
+CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> differences,
+                                        double dt_s,
+                                        const AllanOptions& options = {});
+
+// The Allan deviation as it changes in time.
+
+struct DynamicOptions {
+  std::uint64_t window = 0;  ///< samples; at least 8
+  std::uint64_t step = 0;    ///< samples between windows; 0: half a window
+};
+
+struct DynamicWindow {
+  double from_s = 0, to_s = 0;  ///< after the first sample
+  AllanCurve curve;             ///< no points where the window has too few samples
+};
+
+struct DynamicDeviation {
+  DeviationType type = DeviationType::oadev;
+  std::vector<DynamicWindow> windows;
+  std::vector<std::string> notes;
+};
+
+/// L. Galleani, P. Tavella, "The dynamic Allan variance", IEEE Trans. UFFC 56 (2009) 450: the
+/// deviation of each window of the record, which stands for its middle. Windows begin at 0, step, 2
+/// step … while they fit. Throws Error(usage) for a window that is too short or longer than the
+/// record, or more windows than a million; Error(numeric) when no window gives a point.
+DynamicDeviation dynamic_deviation(std::span<const double> record,
+                                   double dt_s,
+                                   const DynamicOptions& dynamic,
+                                   const AllanOptions& options = {});
 
 }  // namespace libchar

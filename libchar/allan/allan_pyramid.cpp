@@ -7,7 +7,7 @@
 // all of them cost twice the first.
 //
 // In a record with missing samples a level also holds how many of the 2^l each sum lacks
-// (missing_samples.cpp); blocks that lack none go the same way as ever.
+// (present_points.cpp); blocks that lack none go the same way as ever.
 //
 // Squares are added in double within a block and in long double between blocks, whose wide exponent
 // also carries blocks that had to be scaled because their squares overflow or vanish.
@@ -21,10 +21,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/allan_sums.hpp"
 #include "libchar/allan/detail/kernels/octave_terms.hpp"
-#include "libchar/allan/detail/kernels/pyramid_kernels.hpp"
 
 namespace libchar {
 namespace {

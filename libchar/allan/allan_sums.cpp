@@ -19,7 +19,6 @@
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
-#include "libchar/allan/detail/kernels/missing_samples.hpp"
 #include "libchar/allan/detail/kernels/octave_terms.hpp"
 #include "libchar/allan/detail/kernels/present_points.hpp"
 #include "libchar/core/process/work.hpp"

@@ -1,7 +1,5 @@
 // Intervals of a curve's points from their equivalent degrees of freedom.
 
-#include "libchar/allan/confidence.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -12,7 +10,6 @@
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/text/readable.hpp"
 

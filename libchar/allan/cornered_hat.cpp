@@ -18,14 +18,13 @@
 // as their noises have no covariance. Without such noise x + y + z = 0, and it is the
 // three-cornered hat.
 
-#include "libchar/allan/cornered_hat.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"

@@ -1,12 +1,11 @@
 // DADEV(t, tau): the deviation of the window of W samples around t. Windows are independent of each
 // other, O(N W log W / step) at octaves.
 
-#include "libchar/allan/dynamic_deviation.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"

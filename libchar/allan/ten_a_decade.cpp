@@ -2,16 +2,14 @@
 // means of r samples, with terms that start every r samples instead of every one. For r <= m/8
 // neighbouring terms are alike to an eighth of their length. The first begins r/2 samples in: the
 // first sample of all is in one of all terms, and would be in r times its share of them.
-#include "libchar/allan/ten_a_decade.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <map>
 #include <memory>
-#include <vector>
 
 #include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/numeric/whole.hpp"
 
 namespace libchar {

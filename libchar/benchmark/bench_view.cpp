@@ -1,10 +1,9 @@
-#include "libchar/benchmark/bench_view.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {

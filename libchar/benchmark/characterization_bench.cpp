@@ -1,13 +1,10 @@
-#include "libchar/benchmark/characterization_bench.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/detail/estimators.hpp"
-#include "libchar/benchmark/detail/pareto.hpp"
-#include "libchar/benchmark/detail/records.hpp"
 #include "libchar/benchmark/turns.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"

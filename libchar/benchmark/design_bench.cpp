@@ -1,16 +1,14 @@
 // Independent sensors with Allan variances v_i at tau, weighted by 1/v_i: 1/v = sum 1/v_i; n equal
 // ones: v/n. The length of a record: where the Cramer-Rao bound of a term falls to the share
 // (fit/bounds.hpp).
-#include "libchar/benchmark/design_bench.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/detail/estimators.hpp"
-#include "libchar/benchmark/detail/records.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/fit/curve/bounds.hpp"
 

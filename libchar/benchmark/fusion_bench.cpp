@@ -1,5 +1,3 @@
-#include "libchar/benchmark/fusion_bench.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +5,9 @@
 #include <functional>
 #include <map>
 
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/detail/bench_scene_texts.hpp"
-#include "libchar/benchmark/detail/pareto.hpp"
+#include "libchar/benchmark/detail/estimators.hpp"
 #include "libchar/benchmark/turns.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/fusion/registry.hpp"

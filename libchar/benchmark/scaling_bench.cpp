@@ -1,5 +1,3 @@
-#include "libchar/benchmark/scaling_bench.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/turns.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/noise_fit.hpp"

@@ -1,8 +1,7 @@
-#include "libchar/benchmark/stress_bench.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/detail/stress_cells.hpp"
 
 namespace libchar {

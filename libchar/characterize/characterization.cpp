@@ -8,18 +8,13 @@
 #include <cmath>
 #include <functional>
 #include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "libchar/characterize/detail/channel_stages.hpp"
-#include "libchar/characterize/detail/longest_segment.hpp"
+#include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/term_cells.hpp"
 #include "libchar/fit/record/mean_meter.hpp"
-#include "libchar/fit/signs/motion.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/gravity.hpp"
 

@@ -8,13 +8,12 @@
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/characterize/compare/verification.hpp"
-#include "libchar/characterize/detail/summary.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/limits.hpp"
-#include "libchar/characterize/verdict.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
-#include "libchar/spectrum/spectrum_interval.hpp"
+#include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
 namespace {
@@ -155,7 +154,7 @@ ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& 
   out.shown_unit = shown_unit(out.unit);
   out.trace_unit = shown_unit(usual_spelling(channel.trace_unit));
   out.judgement = judge(channel);
-  out.summary = summary_sentence(channel, out.judgement, out.unit);
+  out.summary = detail::summary_sentence(channel, out.judgement, out.unit);
   out.marks = trace_marks(channel, out.shown_unit);
   for (const Finding& one : out.judgement.findings)
     if (one.severity != Severity::note) out.cautions.push_back(one.sentence);

@@ -11,7 +11,7 @@
 #include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/core/numeric/interval.hpp"
-#include "libchar/export/consumers.hpp"
+#include "libchar/export/exports.hpp"
 
 namespace libchar {
 

@@ -38,4 +38,24 @@ std::vector<Finding> findings_of(const ChannelResult& channel);
 /// How well the model explains the channel, by the p-value of the fit.
 std::string goodness_sentence(const Goodness& goodness);
 
+// The report in sentences: what was found, how far it can be trusted, what to look at.
+
+/// One paragraph for the whole recording, `judged` a channel each: as its badges say.
+std::string verdict_of(const Characterization& result, const std::vector<Judgement>& judged);
+std::string verdict_of(const Characterization& result);
+
+/// What a fit found, in sentences with numbers in `unit`.
+std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit);
+
+/// Findings of a fit other than its noise terms: temperature, a filter. The last of `findings`.
+std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit);
+
+namespace detail {
+/// A channel in one sentence: what its noise is, how far that can be used, and what spoils it. The terms, then what
+/// speaks against them; without a fit, why there is none.
+std::string summary_sentence(const ChannelResult& channel,
+                             const Judgement& judgement,
+                             const std::string& unit);
+}  // namespace detail
+
 }  // namespace libchar

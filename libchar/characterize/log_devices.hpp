@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "libchar/allan/cornered_hat.hpp"
-#include "libchar/allan/dynamic_deviation.hpp"
 #include "libchar/characterize/characterization.hpp"
 
 namespace libchar {

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "libchar/characterize/detail/channel_finish.hpp"
+#include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/characterize/detail/stretch_state.hpp"
 #include "libchar/characterize/settings.hpp"
 #include "libchar/core/file/file_text.hpp"

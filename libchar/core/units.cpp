@@ -1,8 +1,5 @@
 #include "libchar/core/units.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -3,16 +3,56 @@
 // targets/TARGET.cpp each; nothing here reads or writes files. Conventions and formulas:
 // docs/exports.md.
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "libchar/core/coefficient.hpp"
 #include "libchar/core/document/enum_table.hpp"
-#include "libchar/export/sensor_group.hpp"
+#include "libchar/model/sensor_model.hpp"
 
 namespace libchar {
+// Models that belong to one device: who is the gyroscope, who the accelerometer, and which axis
+// each model speaks of.
+
+/// One model in its place, and the factor that brings its unit to rad/s, m/s^2, T, Pa…
+struct PlacedModel {
+  const SensorModel* model = nullptr;
+  double to_si = 1;
+};
+
+/// The models of one kind along x, y and z.
+struct SensorTriad {
+  std::string kind;     ///< "gyroscope", "accelerometer", "magnetometer"
+  std::string si_unit;  ///< "rad/s", "m/s^2", "T"
+  std::array<std::optional<PlacedModel>, 3> axis;
+  bool shared = false;  ///< one model without an axis stands for all three
+};
+
+struct SensorGroup {
+  std::optional<SensorTriad> gyroscope, accelerometer, magnetometer;
+  std::vector<const SensorModel*> others;  ///< barometers, thermometers, unknown ones
+  std::vector<const SensorModel*> all;     ///< in the order given
+  std::vector<std::string>
+      unexpressed;  ///< what the models hold and the file they go to cannot say
+};
+
+/// What the user says of a channel that neither its name nor its unit says: ("imu_3", "gx"). Places
+/// are gx gy gz, ax ay az, mx my mz, and g, a, m for one model that stands for all three axes.
+using AxisOverrides = std::vector<std::pair<std::string, std::string>>;
+
+/// Sorts the models (which must outlive the group). Throws Error(input) when two claim one place,
+/// when a model among several says no axis, or when its unit is not that of its kind; Error(usage)
+/// for an override that names no channel or no place. Axes may be missing: `require_axes` asks for
+/// them.
+SensorGroup group_sensors(const std::vector<SensorModel>& models, const AxisOverrides& overrides);
+
+/// Throws Error(input) unless all three axes (or the one named by `only`, 0…2) have a model.
+void require_axes(const SensorTriad& triad, std::optional<std::size_t> only);
 
 enum class AxisChoice {
   automatic,  ///< each axis its own number where the consumer takes three, else the largest
@@ -94,5 +134,23 @@ const ExportTarget& find_export_target(std::string_view name);
 Export export_models(const ExportTarget& target,
                      const std::vector<SensorModel>& models,
                      const ExportOptions& options = {});
+
+// Which number goes where: the same coefficients in the units and under the names of the programs
+// and papers that ask for them (docs/exports.md). Only N, K and B are exchanged;
+// everything else follows by the formula shown. The rows: detail/consumer_rows.hpp.
+
+struct ConsumerNumber {
+  std::string consumer;  ///< "Kalibr, EuRoC, OpenVINS"
+  std::string key;       ///< "gyroscope_noise_density"
+  std::string formula;   ///< "N"
+  std::string value;     ///< to be read, "≤" in front when it is an upper limit
+  std::string unit;
+};
+
+/// Rows for a channel of known quantity; for other channels those that need no convention. Empty
+/// without white noise.
+std::vector<ConsumerNumber> consumer_numbers(const Coefficients& coefficients,
+                                             const std::string& unit,
+                                             double rate_hz);
 
 }  // namespace libchar

@@ -1,5 +1,3 @@
-#include "libchar/export/sensor_group.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/export/exports.hpp"
 
 namespace libchar {
 namespace {

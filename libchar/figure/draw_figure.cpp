@@ -6,8 +6,8 @@
 
 #include "libchar/core/file/crc32.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/figure/detail/cairo_pages.hpp"
-#include "libchar/figure/detail/sheet.hpp"
+#include "libchar/figure/detail/drawing.hpp"
+#include "libchar/figure/detail/scale.hpp"
 
 namespace libchar {
 

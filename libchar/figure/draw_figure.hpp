@@ -1,6 +1,7 @@
 #pragma once
 // A figure as a file: SVG is written here, PDF and PNG are drawn by Cairo, all three from one list of lines and texts.
 
+#include <cstddef>
 #include <string>
 
 #include "libchar/core/document/enum_table.hpp"
@@ -48,5 +49,27 @@ std::string draw_figure(const Chart& figure,
 /// As part of a page, on which no other figure says the same of itself: without a size of its own;
 /// where the pointer rests, it says what a curve or a mark is.
 std::string draw_figure(const Chart& figure, const DrawingOptions& options);
+
+// A figure in a terminal: braille dots, two by four in a character.
+
+struct TerminalFigureOptions {
+  std::size_t columns = 80;  ///< of the terminal
+  std::size_t rows = 20;     ///< of the plot, without axis and legend
+  bool colour = false;       ///< escapes of ECMA-48
+};
+
+/// Lines that end in a newline, none wider than `columns` (at least 40). Each series has a letter
+/// where there are several, and a colour.
+std::string terminal_figure(const Chart& figure, const TerminalFigureOptions& options);
+
+// The numbers of a figure, for those who draw it themselves.
+
+/// part,name,x,y,low,high,text: one row per point. Parts: series, mark, interval (of a mark: from x,y
+/// to low,high), stretch, bar (its row in y).
+std::string figure_csv(const Chart& figure);
+
+/// A script for gnuplot 5 that holds the numbers and draws the figure: gnuplot -e "set terminal
+/// pdfcairo; set output 'f.pdf'" FILE.
+std::string figure_gnuplot(const Chart& figure, const DrawingOptions& options);
 
 }  // namespace libchar

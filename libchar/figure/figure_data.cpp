@@ -1,15 +1,14 @@
-#include "libchar/figure/figure_data.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/text/csv_cell.hpp"
 #include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/figure/detail/sheet.hpp"
+#include "libchar/figure/detail/scale.hpp"
+#include "libchar/figure/draw_figure.hpp"
 
 namespace libchar {
 namespace {

@@ -2,17 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
-
 #include "libchar/characterize/compare/reported_characterization.hpp"
-#include "libchar/characterize/compare/reported_findings.hpp"
 #include "libchar/core/document/document.hpp"
-#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/figure/detail/sources/curve_sources.hpp"
+#include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
-#include "libchar/model/foreign_models.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/replay/report/replay_report.hpp"
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/characterize/compare/characterization_comparison.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/figure/figure.hpp"
 #include "libchar/figure/figure_source.hpp"
@@ -44,3 +45,13 @@ std::vector<std::string> figure_words();
 Chart make_figure(std::span<const FigureSource> sources, const FigureOptions& options);
 
 }  // namespace libchar
+
+// The curves of sensors that are compared, over each other.
+
+namespace libchar::detail {
+
+/// Allan deviation of the candidates of a group with 95 % bands, and a data sheet's line. Without series where
+/// none has a curve.
+Chart compared_chart(const ComparedGroup& group);
+
+}  // namespace libchar::detail

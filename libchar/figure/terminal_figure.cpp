@@ -1,7 +1,5 @@
 // Braille patterns of Unicode: a character has two columns of four dots, each a bit.
 
-#include "libchar/figure/terminal_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/text_table.hpp"
 #include "libchar/figure/detail/scale.hpp"
+#include "libchar/figure/draw_figure.hpp"
 
 namespace libchar {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 // Which logs a fleet has, and what belongs to each: a manifest (YAML, JSON or CSV, docs/fleet.md), or the logs alone.
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,5 +47,30 @@ Manifest manifest_of_logs(const std::vector<std::string>& words,
 /// What is meant as a manifest, right or not: YAML, a file that says `fleet-manifest`, a table with
 /// a column `log` or `device` in any case and spelling nearby that holds no samples.
 bool is_manifest(const std::string& path);
+
+// Digests of logs that somebody took already, as `sha256sum` prints them: a plan need not take them
+// again. They are trusted until a worker reads the log.
+
+struct StatedDigest {
+  std::string sha256;  ///< 64 lower-case hexadecimal digits
+  std::string where;   ///< "FILE:LINE:COL"
+};
+
+/// Of each log, by its absolute path.
+using StatedDigests = std::map<std::string, StatedDigest>;
+
+/// 64 hexadecimal digits in lower case; nothing for any other text.
+std::optional<std::string> sha256_digits(std::string_view text);
+
+/// Lines "DIGEST  PATH", "DIGEST *PATH" or "SHA256 (PATH) = DIGEST"; paths are relative to the
+/// file's folder; empty lines and those that begin with # are left out. Throws Error(input) with
+/// the place of any other line, and for two digests of one path.
+StatedDigests parse_sums(std::string_view text, const std::string& path);
+/// The same of files. Throws Error(input).
+StatedDigests read_sums(const std::vector<std::string>& paths);
+
+/// Gives each device the digest of its log, where there is one, and returns how many got none.
+/// Throws Error(input) where the manifest states another.
+std::size_t state_digests(const StatedDigests& digests, Manifest& manifest);
 
 }  // namespace libchar

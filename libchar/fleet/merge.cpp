@@ -1,5 +1,3 @@
-#include "libchar/fleet/merge.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
+#include "libchar/fleet/plan.hpp"
 
 namespace libchar {
 namespace {

@@ -8,18 +8,13 @@
 #include <cstdio>
 #include <fstream>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <set>
 #include <utility>
 
 #include "libchar/core/document/document.hpp"
-#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/document/schema.hpp"
 #include "libchar/core/file/file_owner.hpp"
 #include "libchar/core/file/file_text.hpp"
-#include "libchar/core/file/folder_lock.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/parallel/parallel.hpp"
@@ -27,7 +22,6 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
-#include "libchar/fleet/detail/unit_cost.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/model/noise_limits.hpp"

@@ -13,10 +13,12 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/document/enum_table.hpp"
 #include "libchar/core/finding.hpp"
 #include "libchar/core/process/progress.hpp"
 #include "libchar/fleet/manifest.hpp"
 #include "libchar/fleet/unit.hpp"
+#include "libchar/lot/device_record.hpp"
 
 namespace libchar {
 
@@ -82,5 +84,62 @@ std::filesystem::path fleet_of_task(const std::string& file);
 
 /// The file of a unit's task, relative to the folder of the plan.
 std::string task_file(std::size_t unit);
+
+// The results of a fleet put together, in the order of its plan whatever order they came in; of
+// several fleets (batches that were planned on different machines) as if one plan had had all of
+// their devices.
+
+struct MergeOptions {
+  bool partial = false;  ///< merge what there is; devices without a result say so
+  /// the folder that the records' `report` is to be relative to; "": as an absolute path
+  std::filesystem::path relative_to;
+};
+
+struct PlannedFleet {
+  std::filesystem::path folder;
+  FleetPlan plan;
+};
+
+/// In an order of their own, whatever order the folders are named in. Throws Error(input) as
+/// read_plan does, and Error(usage) for a folder that is named twice.
+std::vector<PlannedFleet> read_fleets(const std::vector<std::string>& folders);
+
+/// Throws Error(input), by name, where two of the fleets have one log with the same settings: it would count twice.
+void refuse_common_logs(const std::vector<PlannedFleet>& fleets);
+
+/// Default folder of the report of these fleets: next to the working folder, not in it.
+std::string merge_command(const std::vector<std::string>& folders);
+
+/// A record for each device of the plan. Throws Error(input) where results are missing or damaged,
+/// by name, unless `partial`.
+std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
+                                         const std::filesystem::path& folder,
+                                         const MergeOptions& options = {},
+                                         Progress& progress = no_progress());
+
+// One unit of a fleet, by one worker.
+
+enum class UnitOutcome {
+  done,           ///< its result is there now
+  already_there,  ///< it was there before, or another worker was first
+  no_result,      ///< its result is there, and says why the log could not be characterized
+};
+template <>
+inline constexpr auto enum_table<UnitOutcome> =
+    enum_words<UnitOutcome, "done already_there no_result">;
+
+struct UnitRun {
+  UnitOutcome outcome = UnitOutcome::done;
+  std::string problem{};  ///< of no_result: why
+  Findings warnings{};    ///< of a log that was read to its end
+};
+
+/// Computes what is missing of the unit and publishes it in `fleet`/results, whole or not at all.
+/// What the log's content does not allow is a result too. Throws Error(input) where the log was
+/// changed after it was planned, Error(again) for what may be otherwise the next time: a log that
+/// cannot be opened, parts of a join that are not there yet, a full disk.
+UnitRun run_unit(const FleetUnit& unit,
+                 const std::filesystem::path& fleet,
+                 Progress& progress = no_progress());
 
 }  // namespace libchar

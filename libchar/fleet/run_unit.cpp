@@ -1,11 +1,7 @@
-#include "libchar/fleet/run_unit.hpp"
-
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <limits>
 #include <new>
-#include <nlohmann/json.hpp>
 
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/settings.hpp"
@@ -14,7 +10,8 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
-#include "libchar/report/report_files.hpp"
+#include "libchar/fleet/plan.hpp"
+#include "libchar/report/html/html_report.hpp"
 
 namespace libchar {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "libchar/characterize/settings.hpp"
 #include "libchar/core/document/document.hpp"
-#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/document/schema.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/sha256.hpp"

@@ -1,5 +1,3 @@
-#include "libchar/lot/device_batches.hpp"
-
 #include <fmt/format.h>
 
 #include <map>
@@ -7,6 +5,7 @@
 #include <unordered_map>
 
 #include "libchar/core/text/pattern.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document/coefficient_fields.hpp"
-#include "libchar/core/document/json_reader.hpp"
+#include "libchar/core/document/document.hpp"
 #include "libchar/lot/detail/record_scanner.hpp"
 #include "libchar/lot/device_record.hpp"
 

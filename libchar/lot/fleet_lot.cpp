@@ -6,12 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
-#include <string>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
@@ -19,7 +16,7 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/lot_statistics.hpp"
-#include "libchar/lot/detail/statistics/device_outliers.hpp"
+#include "libchar/lot/detail/statistics/grouped_effects.hpp"
 
 namespace libchar {
 namespace {

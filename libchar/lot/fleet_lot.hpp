@@ -14,15 +14,48 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/random_effects.hpp"
 #include "libchar/lot/control_chart.hpp"
-#include "libchar/lot/device_batches.hpp"
 #include "libchar/lot/device_record.hpp"
-#include "libchar/lot/histogram.hpp"
-#include "libchar/lot/left_out.hpp"
 #include "libchar/model/noise_limits.hpp"
 
 namespace libchar {
+// What the mean and the spread of those counted say of all devices of a lot, those not detected or doubtful among them.
+
+struct LotCounts;
+
+struct LeftOut {
+  double share = 0;  ///< of the devices that have a result: not detected or doubtful
+  Interval
+      mean_ci95;  ///< of all of them, in the unit of the values: holds what is possible whichever they are
+  /// The mean of those counted is off by this factor at most: too large, of a temperature coefficient too far from zero.
+  double factor = 1;
+  double spread_high = 0;  ///< upper end of the spread of all; NaN of a temperature coefficient
+};
+
+/// Nothing where all count, and of quantities that are not left out for being small.
+std::optional<LeftOut> left_out(DeviceQuantity quantity,
+                                const LotCounts& counts,
+                                std::span<const double> value,
+                                std::span<const double> variance,
+                                const RandomEffects& effects);
+
+// Which batch each device of a fleet is of. A batch is of a production lot: a device has one, whatever its recordings say.
+
+struct DeviceBatches {
+  std::vector<std::size_t> device_of;  ///< of each record; devices are numbered as they come
+  /// Of each device: the first, in natural order, of the batches stated by its recordings.
+  std::vector<std::string> batch;
+  /// Devices with recordings in several, by name and where they count; empty: none.
+  std::string note;
+};
+
+/// One name and type is one device.
+DeviceBatches device_batches(std::span<const DeviceRecord> records);
+
+/// "batch 7", "no batch".
+std::string batch_title(const std::string& batch);
 
 struct FleetLotOptions {
   /// Of each type of device; "": of all types not named.
@@ -195,5 +228,47 @@ inline const std::string& batch_of(const FleetLot& lot, std::size_t record) {
 
 /// Throws Error(usage) without any record, and as limits_for does.
 FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions& options = {});
+
+// Two lots, or two batches of one, side by side: what differs, by how much, and by more than chance?
+//
+//   FleetComparison comparison = compare_lots(march, april, {.name_a = "March", .name_b = "April"});
+
+struct CompareLotsOptions {
+  std::string name_a = "A", name_b = "B";
+  double false_alarm = 0.05;  ///< probability of any difference between lots that are alike
+};
+
+/// One quantity of one channel in both lots.
+struct LotDifference {
+  std::string type, group;  ///< of the channel
+  DeviceQuantity quantity = DeviceQuantity::white_noise;
+  std::string channel_unit, unit;
+  LotCounts counts_a, counts_b;
+  LotFigures a, b;
+  /// Mean of B over that of A where the quantity is compared as logarithm, else B less A. The interval is of this one alone.
+  double change = 1;
+  Interval change_ci95;
+  double p_mean = 1, p_spread = 1;  ///< of as large a difference of lots that are alike
+  /// The same of any of all tests (Holm): below `false_alarm` the lots differ.
+  double p_mean_of_all = 1, p_spread_of_all = 1;
+  bool mean_differs = false, spread_differs = false;
+  std::string sentence;
+};
+
+struct FleetComparison {
+  std::string name_a, name_b;
+  std::size_t devices_a = 0, devices_b = 0;
+  std::size_t tests = 0;
+  double false_alarm = 0.05;
+  std::vector<LotDifference> differences;  ///< in the order of the groups, whatever the result
+  std::vector<std::string> not_compared;   ///< what only one has, or too few of
+  std::vector<std::string> notes;          ///< of units; the caller's on how the lots were made
+  std::string verdict;
+};
+
+/// Throws Error(usage) where a lot has no record, and Error(input) where they have no channel in common.
+FleetComparison compare_lots(std::span<const DeviceRecord> a,
+                             std::span<const DeviceRecord> b,
+                             const CompareLotsOptions& options = {});
 
 }  // namespace libchar

@@ -6,7 +6,6 @@
 // and no other share f that is missing moves the mean further. sd is that of the values, spread and uncertainty together, since what is too
 // small is so as it was measured: from the scatter of those counted, at its 97.5 % limit. Temperature coefficients that are not detected
 // are about zero: the mean of all is between 1 - f of the mean of those detected and that.
-#include "libchar/lot/left_out.hpp"
 
 #include <algorithm>
 #include <cmath>

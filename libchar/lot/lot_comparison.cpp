@@ -1,15 +1,11 @@
 // Means: Welch's t (Biometrika 34 (1947) 28) of the random-effects means, whose standard errors are Hartung and Knapp's
 // (core/random_effects.hpp). Spreads: detail/equal_spread.cpp. All tests together: Holm (Scand. J. Stat. 6 (1979) 65): the i-th smallest of
 // m probabilities times m - i + 1, never less than the one before.
-#include "libchar/lot/lot_comparison.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <vector>
 
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/refusal.hpp"
@@ -18,6 +14,7 @@
 #include "libchar/lot/detail/lot_figures.hpp"
 #include "libchar/lot/detail/lot_statistics.hpp"
 #include "libchar/lot/detail/statistics/grouped_effects.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
 namespace {

@@ -2,13 +2,12 @@
 // imu0. imu_utils of 2018: gyr_n, acc_n are sqrt(f) times the Allan deviation at 1 s, that of a sample; gyr_w, acc_w
 // are the lowest Allan deviation, which is the floor of bias instability and no random walk (gaowenliang/imu_utils,
 // src/fitallan_gyr.cpp). A fork writes N and K under the same keys. The file says neither which nor f: a line has to.
-#include "libchar/model/foreign_models.hpp"
-
 #include <cmath>
 #include <numbers>
 
 #include "libchar/core/document/schema.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/model/model_file.hpp"
 
 namespace libchar::detail {
 namespace {

@@ -9,13 +9,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
-#include "libchar/core/document/document.hpp"
-#include "libchar/core/document/schema.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/model/foreign_models.hpp"
 #include "libchar/model/model_fields.hpp"
 
 namespace libchar {

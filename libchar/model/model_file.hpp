@@ -1,8 +1,10 @@
 #pragma once
+
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/document/schema.hpp"
 #include "libchar/model/sensor_model.hpp"
@@ -48,3 +50,16 @@ std::vector<SensorModel> read_model_list(const std::string& path);
 std::vector<std::string> model_files(const std::string& path);
 
 }  // namespace libchar
+
+// Files of other programs that hold the noise of an inertial sensor: Kalibr's imu.yaml and what imu_utils writes.
+
+namespace libchar::detail {
+
+/// Whether a document holds sensor models, in the project's format or in one of those.
+bool holds_models(const Document& document);
+
+/// Models of a file of another program: one without an axis for three, or one for each axis; empty for any
+/// other file. Throws Error(input).
+std::vector<SensorModel> foreign_models(const Document& document, const std::string& file);
+
+}  // namespace libchar::detail

@@ -3,9 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libchar/core/document/enum_table.hpp"
+#include "libchar/core/file/growth_check.hpp"
 #include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
@@ -62,5 +64,19 @@ Comparison compare_replays(ReplayReport a, ReplayReport b);
 
 /// Throws Error(input) that names the differences when the two are not of one scene.
 void refuse_unlike(const Comparison& comparison);
+
+// Checks on a comparison, such as a build server asks for: "rmse+5%", "minque:ns_per_sample+20%".
+
+/// Metrics: rmse, regret (by so many points, as it is a share itself), ns_per_sample, peak_bytes;
+/// labels are of algorithms.
+using ComparisonCheck = GrowthCheck;
+
+/// "[LABEL:]METRIC+NUMBER%". Throws Error(usage) with the nearest metric.
+ComparisonCheck parse_comparison_check(std::string_view text);
+
+/// One sentence for each algorithm that fails the check. Fails too: an algorithm with a value in A
+/// and, though B names it, none there. Throws Error(usage) when `label` is in neither report,
+/// and Error(check) when no algorithm has a value in A to hold against: a check that cannot fail.
+std::vector<std::string> failures(const Comparison& comparison, const ComparisonCheck& check);
 
 }  // namespace libchar

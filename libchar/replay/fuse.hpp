@@ -12,8 +12,8 @@
 
 #include "libchar/core/process/progress.hpp"
 #include "libchar/log/read.hpp"
-#include "libchar/replay/column_sink.hpp"
 #include "libchar/replay/fusion_file.hpp"
+#include "libchar/replay/replay.hpp"
 #include "libchar/replay/replay_result.hpp"
 
 namespace libchar {

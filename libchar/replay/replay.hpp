@@ -4,15 +4,54 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "libchar/core/process/heap_meter.hpp"
 #include "libchar/core/process/progress.hpp"
-#include "libchar/replay/column_sink.hpp"
+#include "libchar/core/process/work.hpp"
+#include "libchar/log/write.hpp"
 #include "libchar/replay/replay_result.hpp"
+#include "libchar/scene/scene.hpp"
 
 namespace libchar {
+// Who receives what a replay or a fusion makes, in order of time: a log, when it is a ColumnWriter.
+
+struct ColumnSink {
+  virtual ~ColumnSink() = default;
+  /// Columns and time base of what comes.
+  virtual void begin(const LogInfo& columns) = 0;
+  virtual void block(std::span<const std::span<const double>> columns) = 0;
+};
+
+/// Writes what comes as a log; nothing appears before finish().
+class ColumnWriter final : public ColumnSink {
+ public:
+  ColumnWriter(std::string path, const WriteOptions& writing)
+      : path_(std::move(path)), writing_(writing) {}
+  void begin(const LogInfo& columns) override {
+    LogInfo info = columns;
+    info.file = path_;
+    writer_ = open_log_writer(path_, info, writing_);
+  }
+  void block(std::span<const std::span<const double>> columns) override { writer_->write(columns); }
+  /// Everything but the names: for who commits the files together with others. Throws Error(output).
+  std::vector<WholeFile*> complete() { return writer_->complete(); }
+  /// Returns the files that were written. Throws Error(output).
+  std::vector<std::string> finish() {
+    writer_->finish();
+    return writer_->files();
+  }
+  /// The files that `finish` gives their names.
+  std::vector<std::string> files() const { return writer_->files(); }
+  std::vector<std::string> losses() const { return writer_->losses(); }
+
+ private:
+  std::string path_;
+  WriteOptions writing_;
+  std::unique_ptr<LogWriter> writer_;
+};
 
 struct ReplayOptions {
   std::vector<SceneAlgorithm> algorithms;          ///< win over the scene's list; `line` 0
@@ -50,5 +89,23 @@ ReplayResult replay(const Scene& scene,
                     const ReplayOptions& options = {},
                     Progress& progress = no_progress(),
                     const ReplayWorkspace& workspace = {});
+
+// Options of algorithms from the command line: one value, or a row of them that makes an algorithm run several times.
+
+struct Sweep {
+  std::string algorithm, option;
+  std::vector<double> values;
+};
+
+/// "minque.gamma=0.99", "minque.gamma=.9,.99,.999", "perceptron.neurons=3..30" (whole numbers, all
+/// of up to twelve, else twelve at about equal ratios). `where` is the option of the command line,
+/// for messages. Throws Error(usage): another form, an unknown algorithm or option, a value out of
+/// range, more than `most` values.
+Sweep parse_sweep(const std::string& text, const std::string& where, std::size_t most = 100);
+
+/// Every algorithm of the list that is swept is listed once for each combination of the values;
+/// one that is not in the list is added.
+std::vector<SceneAlgorithm> swept(const std::vector<Sweep>& sweeps,
+                                  const std::vector<SceneAlgorithm>& algorithms);
 
 }  // namespace libchar

@@ -1,7 +1,3 @@
-#include "libchar/replay/sweep.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +5,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/fusion/registry.hpp"
+#include "libchar/replay/replay.hpp"
 
 namespace libchar {
 namespace {

@@ -1,5 +1,3 @@
-#include "libchar/scene/recorded_scene.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,7 +5,6 @@
 #include <filesystem>
 #include <set>
 
-#include "libchar/core/file/file_name.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
@@ -15,6 +12,7 @@
 #include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/model/model_file.hpp"
+#include "libchar/scene/scene_file.hpp"
 
 namespace libchar {
 namespace {

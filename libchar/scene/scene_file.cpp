@@ -10,7 +10,6 @@
 
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/fields.hpp"
-#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/output_files.hpp"
@@ -20,11 +19,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
-#include "libchar/scene/detail/scene_parts.hpp"
-#include "libchar/scene/detail/scene_sensors.hpp"
-#include "libchar/scene/detail/scene_simulation.hpp"
 #include "libchar/scene/detail/scene_values.hpp"
-#include "libchar/scene/text/preparation_check.hpp"
 
 namespace libchar {
 namespace {
@@ -138,6 +133,17 @@ bool has_recorded_signal(const Document& node) {
          });
 }
 
+// What is wrong is said at the block.
+void check_simulation(const MapReader& at, const ArraySimulation& simulation) {
+  try {
+    check(simulation);
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    problem.where = at.where(at.require("simulate"));
+    throw Error(problem);
+  }
+}
+
 // The simulation that `simulate` began with: the same sensors and faults, and its own rows h.
 std::optional<ArraySimulation> simulation_again(const MapReader& at,
                                                 const SimulatedFrom& from,
@@ -164,13 +170,7 @@ std::optional<ArraySimulation> simulation_again(const MapReader& at,
       out.sensors[i].h.assign(from.rows.begin() + static_cast<std::ptrdiff_t>(i * inputs),
                               from.rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * inputs));
   }
-  try {
-    check(out);
-  } catch (const Error& error) {
-    Problem problem = error.problem();
-    problem.where = at.where(at.require("simulate"));
-    throw Error(problem);
-  }
+  check_simulation(at, out);
   return out;
 }
 
@@ -378,13 +378,7 @@ class SceneReader {
       scene_.simulate->sensors.push_back(
           {sensor.name, sensor.model.value_or(SensorModel{}), sensor.h});
     scene_.simulate->faults = scene_.faults;
-    try {
-      check(*scene_.simulate);
-    } catch (const Error& error) {
-      Problem problem = error.problem();
-      problem.where = top_.where(top_.require("simulate"));
-      throw Error(problem);
-    }
+    check_simulation(top_, *scene_.simulate);
   }
 
   MapReader top_;
@@ -480,6 +474,21 @@ Scene read_scene_file(const std::string& path, const SceneReadOptions& options) 
   scene.sha256 = hash.finish();
   scene.bytes = text.size();
   return scene;
+}
+
+std::string why_not_prepared(const Scene& scene) {
+  const ScenePreparation& p = scene.preparation;
+  if (p.from_hz < 0 || p.to_hz < 0 || (p.to_hz > 0 && !(p.from_hz > 0 && p.from_hz < p.to_hz)))
+    return "a band goes from a frequency above zero to a higher one";
+  if (scene.tilt && (p.filters() || p.detrend != "none"))
+    return "the filters of a tilt need gravity, which this takes out";
+  if (!scene.reference) return "";
+  if (scene.reference->estimate_offset && (p.filters() || p.detrend != "none"))
+    return "it leaves no offset of the reference to estimate";
+  const bool offset = scene.reference->estimate_offset || scene.reference->offset != 0;
+  if (offset && scene.reference->channels.size() > 1 && !scene.reference->mean)
+    return "an offset is that of one true input";
+  return "";
 }
 
 }  // namespace libchar

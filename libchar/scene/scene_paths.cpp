@@ -1,5 +1,3 @@
-#include "libchar/scene/scene_paths.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +9,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/utf8.hpp"
-#include "libchar/scene/scene.hpp"
+#include "libchar/scene/scene_file.hpp"
 
 namespace libchar {
 namespace {

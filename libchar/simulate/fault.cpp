@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/simulate/random.hpp"
-
 namespace libchar {
 namespace {
 

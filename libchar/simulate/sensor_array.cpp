@@ -4,8 +4,6 @@
 // samples.
 #include "libchar/simulate/sensor_array.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

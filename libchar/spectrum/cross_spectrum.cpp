@@ -4,10 +4,6 @@
 // with probability 1 - a. K is the number of independent segments, half the degrees of freedom of
 // the average. Groups of segments are added in order, so that the number of threads changes no bit.
 
-#include "libchar/spectrum/cross_spectrum.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,8 +11,8 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/spectrum/detail/segment_choice.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
+#include "libchar/spectrum/welch.hpp"
 
 namespace libchar {
 namespace {

@@ -1,7 +1,6 @@
 #include "libchar/spectrum/fft.hpp"
 
 #include <fftw3.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

@@ -15,8 +15,6 @@
 //   LSB/(pi k) exp(-2 (pi k sigma/LSB)^2),
 // 0.32 LSB without noise, 0.002 LSB at sigma = LSB/2. A line that is no larger is not reported.
 
-#include "libchar/spectrum/lines.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,7 +26,6 @@
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
-#include "libchar/spectrum/window.hpp"
 
 namespace libchar {
 namespace {

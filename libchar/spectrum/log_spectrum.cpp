@@ -4,8 +4,6 @@
 // apart:
 //   variance / level^2 = (1/M^2) sum_{k,l} c_|k-l| 2 / sqrt(nu_k nu_l),      nu = 2 / that.
 
-#include "libchar/spectrum/log_spectrum.hpp"
-
 #include <algorithm>
 #include <cmath>
 

@@ -9,17 +9,13 @@
 // divided by the same. Independence is assumed for bias and variance; overlap counts as it does in
 // the mean.
 
-#include "libchar/spectrum/median_spectrum.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/spectrum/detail/segment_choice.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
+#include "libchar/spectrum/welch.hpp"
 
 namespace libchar {
 namespace {

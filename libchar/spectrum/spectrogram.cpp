@@ -1,15 +1,12 @@
 // Short-time spectra: the periodograms whose mean is Welch's spectrum, segments.cpp.
 
-#include "libchar/spectrum/spectrogram.hpp"
-
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
+#include "libchar/spectrum/welch.hpp"
 
 namespace libchar {
 namespace {

@@ -3,8 +3,6 @@
 
 #include "libchar/spectrum/welch.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,18 +10,14 @@
 #include <mutex>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/term_cells.hpp"
+#include "libchar/spectrum/detail/half_pass.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
-#include "libchar/spectrum/detail/halves_in_place.hpp"
-#include "libchar/spectrum/detail/segment_choice.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
-#include "libchar/spectrum/detail/welch_workspace.hpp"
 
 namespace libchar {
 

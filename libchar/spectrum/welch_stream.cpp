@@ -1,8 +1,6 @@
 // Welch's method on samples as they come. By pairs of halves, where that is possible: each is
 // transformed once. Else one segment is kept, its tail is the head of the next.
 
-#include "libchar/spectrum/welch_stream.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +12,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
-#include "libchar/spectrum/detail/welch_workspace.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 
 namespace libchar {
 

@@ -17,8 +17,6 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
-#include "libchar/spectrum/detail/welch_workspace.hpp"
-#include "libchar/spectrum/welch_stream.hpp"
 
 namespace libchar {
 

@@ -13,7 +13,7 @@
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/detail/kernels/pyramid_kernels.hpp"
+#include "libchar/allan/detail/kernels/octave_terms.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/allan/present_reference.hpp"
 

@@ -1,7 +1,5 @@
 // Degrees of freedom and covariance against exact tables, brute force and simulation.
 
-#include "libchar/allan/confidence.hpp"
-
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <random>
 
 #include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "libchar/allan/cornered_hat.hpp"
-#include "libchar/allan/dynamic_deviation.hpp"
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/support/code_of.hpp"
 

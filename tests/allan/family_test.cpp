@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/confidence.hpp"
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/support/npy.hpp"

@@ -1,14 +1,12 @@
 // Means over what is present: whole curves, no bias, intervals that cover, whatever the noise and the gaps.
 
-#include "libchar/allan/detail/kernels/missing_samples.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/detail/kernels/present_points.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "tests/support/noise.hpp"
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/allan/confidence.hpp"
 
 namespace test {
 

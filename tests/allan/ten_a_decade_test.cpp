@@ -1,11 +1,10 @@
-#include "libchar/allan/ten_a_decade.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/allan_deviation.hpp"
 
 using namespace libchar;
 

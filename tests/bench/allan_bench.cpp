@@ -14,7 +14,6 @@
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/allan/confidence.hpp"
 #include "libchar/core/numeric/moments.hpp"
 #include "tests/support/kernels.hpp"
 

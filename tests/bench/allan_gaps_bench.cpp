@@ -13,7 +13,6 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/allan/confidence.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "tests/support/noise.hpp"
 

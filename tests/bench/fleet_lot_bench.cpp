@@ -22,7 +22,7 @@
 #include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
 #include "libchar/fleet/plan.hpp"
-#include "libchar/lot/lot_comparison.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 #include "tests/lot/made_fleet.hpp"
 

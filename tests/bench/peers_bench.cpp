@@ -2,7 +2,7 @@
 // as in nmayorov's script, on the same simulated records; and against the published fits of
 // imu_utils on its own curves of six real IMUs. Usage: peers_bench [records a scene = 12] [scene
 // numbers = all]
-// The estimators are those of `sensorchar bench` (libchar/benchmark/detail/peer_estimators.hpp).
+// The estimators are those of `sensorchar bench` (libchar/benchmark/detail/peer_estimators.cpp).
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <string>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/benchmark/detail/peer_estimators.hpp"
+#include "libchar/benchmark/detail/estimators.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/curve/curve_fit.hpp"
 #include "libchar/fit/noise_fit.hpp"

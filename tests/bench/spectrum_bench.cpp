@@ -13,10 +13,9 @@
 #include <vector>
 
 #include "libchar/spectrum/fft.hpp"
-#include "libchar/spectrum/log_spectrum.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
-#include "libchar/spectrum/welch_stream.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 #include "tests/support/kernels.hpp"
 
 using namespace libchar;

@@ -1,10 +1,9 @@
 // Ways to get coefficients: who gives what on noise whose coefficients are known.
 
-#include "libchar/benchmark/characterization_bench.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/detail/estimators.hpp"
 #include "libchar/core/error.hpp"
 #include "tests/support/noise.hpp"

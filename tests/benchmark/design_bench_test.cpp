@@ -1,9 +1,9 @@
 // How many sensors, how long a record: by closed forms, and the check by simulation agrees.
 
-#include "libchar/benchmark/design_bench.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
+
+#include "libchar/benchmark/bench_document.hpp"
 
 using namespace libchar;
 

@@ -1,10 +1,9 @@
 // Medians, means and shares with their intervals, by hand and by simulation.
 
-#include "libchar/benchmark/figure.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "libchar/benchmark/turns.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

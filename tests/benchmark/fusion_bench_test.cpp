@@ -1,10 +1,9 @@
 // Fusion over seeds, options and scenes.
 
-#include "libchar/benchmark/fusion_bench.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/scene/scene_file.hpp"
 

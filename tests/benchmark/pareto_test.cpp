@@ -1,9 +1,9 @@
 // Who is on a front, and how far the others are from it.
 
-#include "libchar/benchmark/detail/pareto.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
+
+#include "libchar/benchmark/detail/estimators.hpp"
 
 using namespace libchar;
 

@@ -1,10 +1,10 @@
 // Growth of cost: the exponent by hand, and what is measured is there.
 
-#include "libchar/benchmark/scaling_bench.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+
+#include "libchar/benchmark/bench_document.hpp"
 
 using namespace libchar;
 

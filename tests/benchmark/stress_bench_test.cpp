@@ -1,7 +1,5 @@
 // Stress: nothing is wrong, everything is tried, and what is wrong would be seen.
 
-#include "libchar/benchmark/stress_bench.hpp"
-
 #include <catch2/catch.hpp>
 #include <cctype>
 #include <cmath>
@@ -10,7 +8,7 @@
 #include <set>
 
 #include "libchar/allan/deviation_types.hpp"
-#include "libchar/benchmark/detail/exact_estimators.hpp"
+#include "libchar/benchmark/bench_document.hpp"
 #include "libchar/benchmark/detail/stress_cells.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "tests/support/shared.hpp"

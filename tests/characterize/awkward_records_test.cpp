@@ -7,7 +7,7 @@
 
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/curves/model_curve.hpp"
-#include "libchar/characterize/verdict.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "tests/characterize/refusal.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"

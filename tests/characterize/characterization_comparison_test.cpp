@@ -1,13 +1,14 @@
 // Characterizations side by side: terms, averaging times, pairs of channels.
 
+#include "libchar/characterize/compare/characterization_comparison.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/allan/confidence.hpp"
-#include "libchar/characterize/compare/characterization_check.hpp"
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/report/json/json_report.hpp"
+#include "libchar/report/html/html_report.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/noise.hpp"
 

@@ -10,7 +10,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/spectrum/log_spectrum.hpp"
+#include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
 
 using Catch::Contains;

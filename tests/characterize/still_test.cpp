@@ -7,8 +7,8 @@
 #include <span>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/characterize/verdict.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/fit/signs/digital.hpp"
 #include "libchar/log/quality.hpp"

@@ -1,4 +1,3 @@
-#include "libchar/characterize/detail/summary.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -6,7 +5,7 @@
 
 #include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/compare/verification.hpp"
-#include "libchar/characterize/verdict.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/report/text/characterization_text.hpp"
 #include "tests/report/synthetic.hpp"
 
@@ -29,7 +28,7 @@ Event step_of(double size, double at_s) {
 }
 
 std::string sentence_of(const ChannelResult& c, const std::string& unit = "deg/s") {
-  return summary_sentence(c, judge(c), unit);
+  return detail::summary_sentence(c, judge(c), unit);
 }
 
 Characterization white_noise(std::size_t n, unsigned seed, auto&& spoil) {

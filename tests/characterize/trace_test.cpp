@@ -1,11 +1,10 @@
-#include "libchar/characterize/curves/trace.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "libchar/characterize/characterization.hpp"
 #include "tests/support/parts.hpp"
 
 using namespace libchar;

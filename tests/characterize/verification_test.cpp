@@ -8,7 +8,6 @@
 #include "libchar/fit/remedies.hpp"
 #include "libchar/log/write.hpp"
 #include "libchar/report/html/html_report.hpp"
-#include "libchar/report/json/json_report.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"

@@ -9,9 +9,7 @@
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/spectrum/spectrum.hpp"
-#include "libchar/spectrum/spectrum_interval.hpp"
 #include "libchar/spectrum/welch.hpp"
-#include "libchar/spectrum/window.hpp"
 #include "tests/support/run.hpp"
 
 using namespace libchar;

@@ -4,7 +4,6 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/document/schema.hpp"
 #include "libchar/core/error.hpp"
 

@@ -1,7 +1,6 @@
-#include "libchar/core/file/file_name.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/text/utf8.hpp"
 
 using namespace libchar;

@@ -16,7 +16,6 @@
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/file_owner.hpp"
-#include "libchar/core/file/folder_lock.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/shared.hpp"
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "libchar/core/text/readable.hpp"
-#include "libchar/export/consumers.hpp"
+#include "libchar/export/exports.hpp"
 #include "tests/export/imu_models.hpp"
 
 using namespace libchar;

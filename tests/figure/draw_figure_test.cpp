@@ -8,7 +8,6 @@
 #include <random>
 
 #include "libchar/core/error.hpp"
-#include "libchar/figure/figure_data.hpp"
 #include "tests/figure/figure_parts.hpp"
 #include "tests/support/run.hpp"
 

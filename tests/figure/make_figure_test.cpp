@@ -6,8 +6,8 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/figure/draw_figure.hpp"
-#include "libchar/report/json/json_report.hpp"
-#include "libchar/report/json/replay_json.hpp"
+#include "libchar/report/html/html_report.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "tests/figure/figure_parts.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/report/synthetic_replay.hpp"

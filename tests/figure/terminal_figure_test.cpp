@@ -1,10 +1,9 @@
-#include "libchar/figure/terminal_figure.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
 #include "libchar/core/text/text_table.hpp"
+#include "libchar/figure/draw_figure.hpp"
 #include "tests/figure/figure_parts.hpp"
 
 using namespace libchar;

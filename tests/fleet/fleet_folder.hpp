@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "libchar/fleet/plan.hpp"
-#include "libchar/fleet/run_unit.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/shared.hpp"
 

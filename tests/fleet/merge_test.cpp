@@ -1,11 +1,10 @@
 // Fleets that were planned apart: one report, as if one plan had had all devices.
 
-#include "libchar/fleet/merge.hpp"
-
 #include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fleet/plan.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 #include "tests/fleet/fleet_folder.hpp"
 #include "tests/report/written_fleet.hpp"

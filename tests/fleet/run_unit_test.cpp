@@ -1,7 +1,5 @@
 // Workers: whole results or none, whoever is killed, whoever is first.
 
-#include "libchar/fleet/run_unit.hpp"
-
 #include <fmt/ranges.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,8 +11,8 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
-#include "libchar/fleet/merge.hpp"
-#include "libchar/fleet/status.hpp"
+#include "libchar/fleet/jobs.hpp"
+#include "libchar/fleet/plan.hpp"
 #include "tests/fleet/fleet_folder.hpp"
 
 using namespace libchar;

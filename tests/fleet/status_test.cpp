@@ -1,11 +1,10 @@
 // How far a fleet is.
 
-#include "libchar/fleet/status.hpp"
-
 #include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "libchar/fleet/detail/result_store.hpp"
+#include "libchar/fleet/jobs.hpp"
 #include "tests/fleet/fleet_folder.hpp"
 
 using namespace libchar;

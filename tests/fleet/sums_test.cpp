@@ -1,7 +1,5 @@
 // Digests that somebody else took: read as sha256sum writes them, trusted by the plan, checked by the workers.
 
-#include "libchar/fleet/sums.hpp"
-
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
@@ -9,8 +7,9 @@
 #include "libchar/core/error.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 #include "libchar/fleet/detail/result_store.hpp"
-#include "libchar/fleet/merge.hpp"
-#include "libchar/fleet/status.hpp"
+#include "libchar/fleet/jobs.hpp"
+#include "libchar/fleet/manifest.hpp"
+#include "libchar/fleet/plan.hpp"
 #include "tests/fleet/fleet_folder.hpp"
 
 using namespace libchar;

@@ -8,9 +8,7 @@
 #include <fstream>
 
 #include "libchar/figure/draw_figure.hpp"
-#include "libchar/figure/figure_data.hpp"
 #include "libchar/figure/make_figure.hpp"
-#include "libchar/figure/terminal_figure.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 
 using namespace libchar;

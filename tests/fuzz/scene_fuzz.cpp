@@ -13,7 +13,6 @@
 #include "libchar/core/error.hpp"
 #include "libchar/scene/scene.hpp"
 #include "libchar/scene/scene_file.hpp"
-#include "libchar/scene/text/scene_writer.hpp"
 
 using namespace libchar;
 

@@ -7,7 +7,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/core/numeric/moments.hpp"
-#include "libchar/spectrum/welch_stream.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 
 using namespace libchar;

@@ -23,7 +23,7 @@ class Question:
 
 QUESTIONS = [
     Question("word of a shell", "libchar/core/text/text.cpp: shell_word", r"'\\\\''"),
-    Question("cell of CSV", "libchar/core/text/csv_cell.cpp: csv_cell", r'"\\"\\""'),
+    Question("cell of CSV", "libchar/core/text/markup.cpp: csv_cell", r'"\\"\\""'),
     Question("entities of HTML and XML", "libchar/core/text/markup.cpp: markup_entities", r"&(?:amp|lt|gt|quot|#39);"),
     Question("range FROM..TO", "libchar/core/text/quantity_text.cpp: parse_range", r'\bfind\("\.\."\)'),
     Question("number in a text", "libchar/core/text/decimal.cpp: parse_double",

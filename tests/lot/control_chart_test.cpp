@@ -6,7 +6,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/lot/histogram.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

@@ -1,11 +1,10 @@
 // Devices of several channels, held against each other as devices: how often a sound lot names one, and a noisier
 // one is named.
-#include "libchar/lot/detail/statistics/device_outliers.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
+#include "libchar/lot/detail/statistics/grouped_effects.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

@@ -1,10 +1,9 @@
 // Lines through the values of groups, one spread about all of them.
 
-#include "libchar/lot/detail/statistics/grouped_lines.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "libchar/lot/detail/statistics/grouped_effects.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

@@ -1,7 +1,5 @@
 // Means of lots in which some devices are not detected.
 
-#include "libchar/lot/left_out.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>

@@ -1,13 +1,12 @@
 // Squares of which some are not told from zero.
 
-#include "libchar/lot/detail/statistics/lognormal_effects.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "libchar/lot/detail/lot_figures.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;

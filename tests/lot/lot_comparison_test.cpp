@@ -1,11 +1,10 @@
 // Two lots side by side.
 
-#include "libchar/lot/lot_comparison.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 #include "tests/lot/made_fleet.hpp"
 
 using namespace libchar;

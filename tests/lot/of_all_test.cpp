@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "libchar/lot/fleet_lot.hpp"
-#include "libchar/lot/lot_comparison.hpp"
 #include "tests/lot/made_fleet.hpp"
 
 using namespace libchar;

@@ -5,7 +5,7 @@
 
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/model/detail/noise_units.hpp"
+#include "libchar/model/detail/noise_term.hpp"
 #include "libchar/model/model_file.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/places.hpp"

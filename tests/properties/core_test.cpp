@@ -7,7 +7,7 @@
 
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json.hpp"
-#include "libchar/core/file/file_name.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/dense.hpp"
@@ -16,8 +16,8 @@
 #include "libchar/core/numeric/moments.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/numeric/random_effects.hpp"
-#include "libchar/core/text/csv_cell.hpp"
 #include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"

@@ -6,13 +6,12 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/benchmark/detail/exact_estimators.hpp"
+#include "libchar/benchmark/detail/stress_cells.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/spectrum/fft.hpp"
-#include "libchar/spectrum/log_spectrum.hpp"
+#include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
-#include "libchar/spectrum/welch_stream.hpp"
-#include "libchar/spectrum/window.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 #include "tests/properties/generate.hpp"
 
 using namespace libchar;

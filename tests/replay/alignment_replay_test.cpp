@@ -5,9 +5,8 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/replay/replay.hpp"
-#include "libchar/report/json/replay_json.hpp"
 #include "libchar/report/replay/replay_text.hpp"
-#include "libchar/scene/text/scene_writer.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/replay/kept_columns.hpp"
 #include "tests/replay/scene_text.hpp"
 #include "tests/support/noise.hpp"

@@ -8,7 +8,7 @@
 
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/replay.hpp"
-#include "libchar/replay/view/verdict.hpp"
+#include "libchar/replay/view/ranking.hpp"
 #include "tests/replay/replay_numbers.hpp"
 #include "tests/replay/scene_text.hpp"
 #include "tests/support/noise.hpp"

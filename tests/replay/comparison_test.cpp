@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/replay/comparison_check.hpp"
 #include "libchar/replay/report/replay_report.hpp"
 #include "libchar/report/compare/comparison_text.hpp"
 #include "tests/support/shared.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libchar/replay/column_sink.hpp"
+#include "libchar/replay/replay.hpp"
 
 struct KeptColumns final : libchar::ColumnSink {
   void begin(const libchar::LogInfo& info) override { head = info; }

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "libchar/replay/replay.hpp"
-#include "libchar/replay/view/verdict.hpp"
+#include "libchar/replay/view/ranking.hpp"
 
 namespace test {
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/replay/detail/tracks/thinned_tracks.hpp"
-#include "libchar/replay/view/verdict.hpp"
-#include "libchar/report/json/replay_json.hpp"
+#include "libchar/replay/view/ranking.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "tests/replay/replay_numbers.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

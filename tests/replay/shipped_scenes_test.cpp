@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "libchar/core/error.hpp"
-#include "libchar/scene/text/scene_writer.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/support/shared.hpp"
 #include "tests/support/thesis_scenes.hpp"
 

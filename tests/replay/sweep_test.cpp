@@ -1,8 +1,8 @@
 // Sweeps of options: their forms, ranges and grids.
 
-#include "libchar/replay/sweep.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "libchar/replay/replay.hpp"
 
 using namespace libchar;
 using Catch::Contains;

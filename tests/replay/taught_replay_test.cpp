@@ -7,9 +7,9 @@
 
 #include "libchar/replay/detail/align/term_choice.hpp"
 #include "libchar/replay/replay.hpp"
-#include "libchar/replay/view/verdict.hpp"
-#include "libchar/report/json/replay_json.hpp"
-#include "libchar/scene/text/scene_writer.hpp"
+#include "libchar/replay/view/ranking.hpp"
+#include "libchar/report/replay/replay_text.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/replay/replay_numbers.hpp"
 #include "tests/replay/scene_text.hpp"
 #include "tests/support/noise.hpp"

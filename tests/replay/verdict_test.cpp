@@ -1,5 +1,3 @@
-#include "libchar/replay/view/verdict.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "libchar/replay/replay.hpp"
+#include "libchar/replay/view/ranking.hpp"
 #include "tests/replay/replay_numbers.hpp"
 #include "tests/replay/scene_text.hpp"
 #include "tests/support/noise.hpp"

@@ -6,8 +6,7 @@
 
 #include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/report/compare/bench_against.hpp"
-#include "libchar/report/compare/bench_report_files.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 
 using namespace libchar;
 using Catch::Contains;

@@ -1,10 +1,9 @@
-#include "libchar/report/detail/escape.hpp"
-
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "libchar/core/text/csv_cell.hpp"
+#include "libchar/core/text/markup.hpp"
+#include "libchar/report/detail/html/html_tables.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

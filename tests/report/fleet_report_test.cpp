@@ -12,13 +12,12 @@
 #include <sstream>
 
 #include "libchar/core/file/whole_file.hpp"
-#include "libchar/core/text/csv_cell.hpp"
 #include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/markup.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/report/compare/comparison_text.hpp"
 #include "libchar/report/detail/charts.hpp"
 #include "libchar/report/detail/npz_writer.hpp"
-#include "libchar/report/text/coefficient_table.hpp"
 #include "tests/lot/made_fleet.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/written_fleet.hpp"

@@ -1,6 +1,6 @@
-#include "libchar/report/text/inspection_text.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "libchar/report/text/characterization_text.hpp"
 
 using namespace libchar;
 using Catch::Contains;

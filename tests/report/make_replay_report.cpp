@@ -8,8 +8,6 @@
 
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/replay/replay.hpp"
-#include "libchar/report/html/replay_html.hpp"
-#include "libchar/report/json/replay_json.hpp"
 #include "libchar/report/replay/replay_text.hpp"
 #include "libchar/scene/scene_file.hpp"
 #include "tests/report/synthetic_replay.hpp"

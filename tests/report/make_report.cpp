@@ -10,7 +10,6 @@
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/html/html_report.hpp"
-#include "libchar/report/json/json_report.hpp"
 #include "libchar/report/text/curves_text.hpp"
 #include "tests/report/synthetic.hpp"
 

@@ -6,12 +6,11 @@
 #include <set>
 #include <sstream>
 
-#include "libchar/characterize/verdict.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/export/consumers.hpp"
+#include "libchar/export/exports.hpp"
 #include "libchar/log/inspection.hpp"
 #include "libchar/report/html/html_report.hpp"
-#include "libchar/report/json/json_report.hpp"
 #include "libchar/report/text/curves_text.hpp"
 #include "tests/report/synthetic.hpp"
 

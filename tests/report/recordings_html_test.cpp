@@ -8,7 +8,6 @@
 #include "libchar/core/document/json.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 #include "libchar/report/html/html_report.hpp"
-#include "libchar/report/html/runs_report.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/schemas.hpp"

@@ -1,4 +1,3 @@
-#include "libchar/report/html/replay_html.hpp"
 
 #include <catch2/catch.hpp>
 #include <regex>

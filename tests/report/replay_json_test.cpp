@@ -1,11 +1,10 @@
-#include "libchar/report/json/replay_json.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "tests/report/synthetic_replay.hpp"
 
 using namespace libchar;

@@ -4,9 +4,7 @@
 #include <regex>
 #include <string>
 
-#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/html/replay_html.hpp"
 #include "libchar/report/replay/replay_text.hpp"
 #include "tests/report/page_text.hpp"
 #include "tests/report/synthetic_replay.hpp"

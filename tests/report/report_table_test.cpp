@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
-#include "libchar/report/json/json_report.hpp"
-#include "libchar/report/json/replay_json.hpp"
+#include "libchar/report/html/html_report.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/report/synthetic_replay.hpp"
 

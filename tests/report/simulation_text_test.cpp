@@ -1,7 +1,7 @@
-#include "libchar/report/text/simulation_text.hpp"
-
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+
+#include "libchar/report/text/characterization_text.hpp"
 
 using namespace libchar;
 using Catch::Contains;

@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "libchar/scene/scene_paths.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/replay/scene_text.hpp"
 
 using namespace libchar;

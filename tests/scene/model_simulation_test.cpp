@@ -1,10 +1,9 @@
-#include "libchar/scene/model_simulation.hpp"
-
 #include <catch2/catch.hpp>
 #include <fstream>
 
 #include "libchar/core/error.hpp"
 #include "libchar/scene/scene_file.hpp"
+#include "libchar/scene/simulated_scene.hpp"
 #include "tests/support/run.hpp"
 
 using namespace libchar;

@@ -1,9 +1,8 @@
 // A scene from a recording and a few words, and patterns in a scene's own list of sensors.
-#include "libchar/scene/recorded_scene.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "libchar/scene/text/scene_writer.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/replay/scene_text.hpp"
 
 using namespace libchar;

@@ -1,9 +1,8 @@
-#include "libchar/scene/recorded_signal.hpp"
-
 #include <catch2/catch.hpp>
 #include <fstream>
 
 #include "libchar/core/error.hpp"
+#include "libchar/scene/simulated_scene.hpp"
 #include "libchar/scene/text/typed_text.hpp"
 #include "tests/support/run.hpp"
 

@@ -5,8 +5,7 @@
 
 #include "libchar/core/document/document.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/scene/scene_paths.hpp"
-#include "libchar/scene/text/scene_writer.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "libchar/simulate/sensor_array.hpp"
 #include "tests/replay/scene_text.hpp"
 

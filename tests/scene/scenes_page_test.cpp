@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "libchar/scene/text/scene_writer.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "tests/replay/scene_text.hpp"
 #include "tests/support/places.hpp"
 

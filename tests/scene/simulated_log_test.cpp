@@ -1,11 +1,10 @@
-#include "libchar/scene/simulated_log.hpp"
-
 #include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/scene/scene_file.hpp"
+#include "libchar/scene/simulated_scene.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

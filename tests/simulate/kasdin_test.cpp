@@ -1,4 +1,4 @@
-#include "libchar/simulate/detail/kasdin.hpp"
+#include "tests/support/kasdin.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "libchar/simulate/detail/flicker.hpp"
 #include "libchar/simulate/random.hpp"
-#include "tests/support/kasdin.hpp"
 #include "tests/support/shared.hpp"
 #include "tests/support/table.hpp"
 

@@ -1,11 +1,10 @@
-#include "libchar/simulate/detail/shape_filter.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <numeric>
 
+#include "libchar/simulate/detail/sensor_chain.hpp"
 #include "libchar/spectrum/welch.hpp"
 #include "tests/support/noise.hpp"
 

@@ -11,7 +11,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
 #include "libchar/spectrum/fft.hpp"
-#include "libchar/spectrum/welch_stream.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 
 using namespace libchar;
 

@@ -1,10 +1,9 @@
-#include "libchar/spectrum/detail/halves_in_place.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "libchar/spectrum/detail/half_pass.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/welch.hpp"
 

@@ -1,4 +1,3 @@
-#include "libchar/spectrum/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,7 +9,6 @@
 #include "libchar/spectrum/fft.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
-#include "libchar/spectrum/window.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

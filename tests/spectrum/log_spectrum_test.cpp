@@ -1,4 +1,3 @@
-#include "libchar/spectrum/log_spectrum.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,7 +6,6 @@
 
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
-#include "libchar/spectrum/window.hpp"
 
 using namespace libchar;
 

@@ -7,9 +7,7 @@
 
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/spectrum/cross_spectrum.hpp"
-#include "libchar/spectrum/median_spectrum.hpp"
-#include "libchar/spectrum/spectrogram.hpp"
+#include "libchar/spectrum/welch.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/shared.hpp"
 

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "libchar/core/error.hpp"
-#include "libchar/spectrum/welch_stream.hpp"
 #include "tests/support/parts.hpp"
 
 using namespace libchar;

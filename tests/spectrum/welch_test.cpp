@@ -11,9 +11,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/spectrum/spectrum.hpp"
-#include "libchar/spectrum/spectrum_interval.hpp"
-#include "libchar/spectrum/welch_stream.hpp"
-#include "libchar/spectrum/window.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;

@@ -11,7 +11,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/benchmark/turns.hpp"
-#include "libchar/characterize/curves/trace.hpp"
+#include "libchar/characterize/characterization.hpp"
 #include "libchar/core/numeric/moments.hpp"
 #include "libchar/fusion/detail/delay_search.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
@@ -19,7 +19,7 @@
 #include "libchar/log/quality.hpp"
 #include "libchar/simulate/detail/flicker.hpp"
 #include "libchar/simulate/random.hpp"
-#include "libchar/spectrum/welch_stream.hpp"
+#include "libchar/spectrum/welch_sums.hpp"
 
 using namespace libchar;
 

@@ -21,11 +21,11 @@
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/libchar.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/report/html/html_report.hpp"
 #include "libchar/report/replay/replay_text.hpp"
-#include "libchar/report/report_files.hpp"
-#include "libchar/scene/recorded_scene.hpp"
+#include "libchar/scene/scene_file.hpp"
 #include "libchar/scene/text/typed_text.hpp"
-#include "libchar/spectrum/spectrum_interval.hpp"
+#include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar_python {
 namespace {

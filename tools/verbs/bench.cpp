@@ -12,7 +12,6 @@
 
 #include "heap_meter.hpp"
 #include "libchar/benchmark/bench_document.hpp"
-#include "libchar/benchmark/bench_inputs.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/numeric/whole.hpp"
@@ -20,9 +19,8 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fusion/registry.hpp"
-#include "libchar/replay/sweep.hpp"
-#include "libchar/report/compare/bench_against.hpp"
-#include "libchar/report/compare/bench_report_files.hpp"
+#include "libchar/replay/replay.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
-#include "libchar/characterize/compare/characterization_check.hpp"
+#include "libchar/characterize/compare/characterization_comparison.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -17,9 +17,7 @@
 #include "libchar/log/recording_json.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/replay/comparison.hpp"
-#include "libchar/replay/comparison_check.hpp"
 #include "libchar/report/compare/comparison_text.hpp"
-#include "libchar/report/compare/which_text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

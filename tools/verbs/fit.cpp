@@ -10,7 +10,6 @@
 #include "libchar/characterize/curves/curve_table_fit.hpp"
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/core/file/file_name.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
@@ -21,7 +20,7 @@
 #include "libchar/log/formats.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/model/model_file.hpp"
-#include "libchar/report/text/fit_text.hpp"
+#include "libchar/report/text/characterization_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

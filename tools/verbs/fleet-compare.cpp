@@ -8,9 +8,8 @@
 
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
-#include "libchar/lot/device_batches.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 #include "libchar/report/compare/comparison_text.hpp"
 #include "verb.hpp"
 

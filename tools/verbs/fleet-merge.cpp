@@ -12,7 +12,6 @@
 #include "libchar/core/process/free_memory.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/fleet/merge.hpp"
 #include "libchar/fleet/plan.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 #include "reading_options.hpp"

@@ -9,9 +9,9 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/fleet/jobs.hpp"
+#include "libchar/fleet/manifest.hpp"
 #include "libchar/fleet/plan.hpp"
-#include "libchar/fleet/status.hpp"
-#include "libchar/fleet/sums.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

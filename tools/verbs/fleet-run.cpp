@@ -8,9 +8,8 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/fleet/jobs.hpp"
 #include "libchar/fleet/plan.hpp"
-#include "libchar/fleet/run_unit.hpp"
-#include "libchar/fleet/status.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

@@ -6,9 +6,8 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/fleet/merge.hpp"
+#include "libchar/fleet/jobs.hpp"
 #include "libchar/fleet/plan.hpp"
-#include "libchar/fleet/status.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

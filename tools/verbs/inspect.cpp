@@ -14,7 +14,7 @@
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/inspection.hpp"
-#include "libchar/report/text/inspection_text.hpp"
+#include "libchar/report/text/characterization_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
 

@@ -15,7 +15,7 @@
 #include "libchar/log/recording_json.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/replay/device_source.hpp"
-#include "libchar/report/text/model_text.hpp"
+#include "libchar/report/text/characterization_text.hpp"
 #include "verb.hpp"
 
 namespace sensorchar {

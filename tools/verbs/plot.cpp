@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "analysis_options.hpp"
-#include "libchar/characterize/compare/paired_channels.hpp"
-#include "libchar/characterize/compare/reported_findings.hpp"
+#include "libchar/characterize/compare/characterization_comparison.hpp"
+#include "libchar/characterize/compare/reported_characterization.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
@@ -15,7 +15,6 @@
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/figure/draw_figure.hpp"
-#include "libchar/figure/figure_data.hpp"
 #include "libchar/figure/make_figure.hpp"
 #include "verb.hpp"
 

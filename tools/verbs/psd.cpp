@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
-#include "libchar/characterize/curves/log_pair_spectra.hpp"
 #include "libchar/characterize/curves/log_spectra.hpp"
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/core/file/whole_file.hpp"

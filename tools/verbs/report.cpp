@@ -5,7 +5,7 @@
 #include "analysis_options.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/report/compare/which_text.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "libchar/report/text/report_table.hpp"
 #include "verb.hpp"
 

@@ -5,7 +5,6 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/benchmark/detail/peer_estimators.hpp"
 #include "libchar/fit/curve/allan_fit.hpp"
 #include "libchar/fit/curve/curve_fit.hpp"
 #include "libchar/fit/noise_fit.hpp"

@@ -1,10 +1,9 @@
 // Definitions: NIST SP 1065 (2008), 5.2 (Allan family); Welch 1967; weights by Householder QR of differences of errors.
-#include "libchar/benchmark/detail/exact_estimators.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "libchar/benchmark/detail/stress_cells.hpp"
 #include "libchar/core/numeric/whole.hpp"
 
 namespace libchar {

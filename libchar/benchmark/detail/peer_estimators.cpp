@@ -1,13 +1,13 @@
 // Asymptotes that these recipes assume of the Allan variance at tau, per squared coefficient (IEEE
 // Std 952-1997, annex C): 3/tau^2 quantization, 1/tau white, 2 ln 2/pi flicker, tau/3 walk, tau^2/2
 // ramp.
-#include "libchar/benchmark/detail/peer_estimators.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "libchar/benchmark/detail/estimators.hpp"
 
 namespace libchar {
 namespace {

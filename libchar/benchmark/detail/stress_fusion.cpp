@@ -279,9 +279,6 @@ std::vector<StressArray> stress_arrays(std::uint64_t seed) {
   return all;
 }
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-
 constexpr double kWeightDigits = 8;
 
 struct Fused {

@@ -1,7 +1,7 @@
 // Simulated noise in other units: the same numbers times a power of two.
 #include <cmath>
 
-#include "libchar/benchmark/detail/records.hpp"
+#include "libchar/benchmark/detail/estimators.hpp"
 #include "libchar/benchmark/detail/stress_cells.hpp"
 
 namespace libchar {

@@ -1,11 +1,10 @@
-#include "libchar/characterize/compare/paired_channels.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
 
+#include "libchar/characterize/compare/characterization_comparison.hpp"
 #include "libchar/core/axis_name.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"

@@ -6,18 +6,15 @@
 #include <cmath>
 #include <filesystem>
 
-#include "libchar/characterize/compare/reported_findings.hpp"
 #include "libchar/characterize/curves/curve_document.hpp"
-#include "libchar/characterize/curves/sensor_model_curve.hpp"
+#include "libchar/characterize/curves/model_curve.hpp"
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/document/document.hpp"
-#include "libchar/core/document/json_reader.hpp"
-#include "libchar/core/document/schema.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
 #include "libchar/fit/fit_json.hpp"
-#include "libchar/model/foreign_models.hpp"
 #include "libchar/model/model_file.hpp"
 
 namespace libchar {
@@ -265,3 +262,30 @@ ReportedCharacterization read_characterization_report(const std::string& path) {
 }
 
 }  // namespace libchar
+
+namespace libchar::detail {
+
+std::vector<Finding> reported_findings(const MapReader& document) {
+  std::vector<Finding> out;
+  if (document.has("findings"))
+    for (const MapReader& row : document.maps("findings")) {
+      Finding one;
+      read_fields(finding_fields(), row, one);
+      one.subject = kOfRecording;
+      if (one.severity != Severity::note && !one.effects.empty()) out.push_back(std::move(one));
+    }
+  const MapReader rows = document.has("summary") ? document.map("summary") : document;
+  if (!rows.has("channels")) return out;
+  for (const MapReader& channel : rows.maps("channels")) {
+    if (!channel.has("name") || !channel.has("findings")) continue;
+    for (const MapReader& row : channel.maps("findings")) {
+      Finding one;
+      read_fields(finding_fields(), row, one);
+      one.subject = channel.text("name");
+      if (one.severity != Severity::note) out.push_back(std::move(one));
+    }
+  }
+  return worst_first(std::move(out));
+}
+
+}  // namespace libchar::detail

@@ -7,6 +7,8 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/core/coefficient.hpp"
+#include "libchar/core/document/schema.hpp"
+#include "libchar/core/finding.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/model/sensor_model.hpp"
 
@@ -70,3 +72,16 @@ std::string document_format(const std::string& path);
 
 }  // namespace detail
 }  // namespace libchar
+
+// What a document says is known of its channels.
+
+namespace libchar::detail {
+
+/// Subject of what the reader found and a quantity depends on.
+inline constexpr const char* kOfRecording = "the recording";
+
+/// Of the report of a characterization, or of what is printed of curves, spectra and fits: all but
+/// notes, the worst first; the subject is the channel. None where the document has none.
+std::vector<Finding> reported_findings(const MapReader& document);
+
+}  // namespace libchar::detail

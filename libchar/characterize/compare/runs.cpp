@@ -13,10 +13,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <span>
 
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/characterize/characterization.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/simulate/random.hpp"

@@ -8,10 +8,10 @@
 // when the whole interval is above the limit. The mean of n squares V_i with intervals l_i..u_i has by the same
 // method the interval
 //   V - sqrt(sum (V_i - l_i)²) / n  ..  V + sqrt(sum (u_i - V_i)²) / n.
-#include "libchar/characterize/compare/term_ratio.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "libchar/characterize/compare/characterization_comparison.hpp"
 
 namespace libchar::detail {
 namespace {

@@ -1,8 +1,7 @@
-#include "libchar/characterize/curves/trace.hpp"
-
 #include <algorithm>
 #include <limits>
 
+#include "libchar/characterize/characterization.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 
 namespace libchar {

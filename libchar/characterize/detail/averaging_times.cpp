@@ -2,14 +2,13 @@
 // from it by the intervals of both (term_ratio.cpp). Neighbouring times with the same answer are a range. Where
 // two curves cross, neither is lower for a stretch: one shorter than a third of a decade between two others is a
 // border, in its geometric middle.
-#include "libchar/characterize/detail/averaging_times.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/characterize/compare/characterization_comparison.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar::detail {

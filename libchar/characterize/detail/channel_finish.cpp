@@ -2,17 +2,15 @@
 // the sums over its leaves. Which of both depends on its length only. What still needs the samples
 // of a longer one (`what_needs_all_samples`) changes no coefficient but by a temperature, which is
 // taken out of the samples.
-#include "libchar/characterize/detail/channel_finish.hpp"
-
 #include <fmt/format.h>
 
 #include <bit>
 #include <cmath>
 #include <numbers>
 
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
-#include "libchar/allan/confidence.hpp"
-#include "libchar/allan/ten_a_decade.hpp"
+#include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/numeric/whole.hpp"
@@ -24,7 +22,7 @@
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/fit/signs/motion.hpp"
-#include "libchar/spectrum/log_spectrum.hpp"
+#include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
 namespace {

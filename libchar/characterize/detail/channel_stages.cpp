@@ -1,11 +1,9 @@
-#include "libchar/characterize/detail/channel_stages.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/core/numeric/whole.hpp"
-#include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"

@@ -1,7 +1,4 @@
-#include "libchar/characterize/detail/longest_segment.hpp"
-
-#include <fmt/format.h>
-
+#include "libchar/characterize/detail/channel_stage.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/spectrum/welch.hpp"

@@ -1,6 +1,5 @@
 #include "libchar/core/detail/output_journal.hpp"
 
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -55,4 +55,9 @@ Json as_json(const Document& document);
 /// Reads a whole small text file: a regular one of at most 16 MiB. Throws Error(input).
 std::string read_document_text(const std::string& path);
 
+// JSON with the places of its values.
+
+/// The tree of a JSON document, by parse_json's rules. Throws Error(input) with FILE:LINE:COL (byte N).
+Document parse_json_document(std::string_view text, const std::string& file);
+
 }  // namespace libchar

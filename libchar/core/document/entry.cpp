@@ -8,13 +8,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "libchar/core/detail/match.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {
+
+using detail::Match;
 
 Json json_interval(const Interval& interval) {
   if (std::isnan(interval.low) || std::isnan(interval.high)) return nullptr;

@@ -60,4 +60,15 @@ std::string yaml_of(const std::vector<Entry>& entries,
                     const std::string& indent = "",
                     bool comments = true);
 
+// What to do with a variant, one case a type: std::visit(Match{[](double x) {…}, [](const std::string& s) {…}}, value).
+
+namespace detail {
+template <class... Cases>
+struct Match : Cases... {
+  using Cases::operator()...;
+};
+template <class... Cases>
+Match(Cases...) -> Match<Cases...>;
+}  // namespace detail
+
 }  // namespace libchar

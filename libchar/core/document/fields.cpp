@@ -2,18 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
-#include "libchar/core/detail/match.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
 namespace {
+
+using detail::Match;
 
 std::vector<std::string> texts_of(std::span<const Word> words) {
   std::vector<std::string> out;

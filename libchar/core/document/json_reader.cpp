@@ -1,7 +1,5 @@
 // JSON as a tree with places: nlohmann's parser with the guards it lacks.
 
-#include "libchar/core/document/json_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document/json.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/output_files.hpp"

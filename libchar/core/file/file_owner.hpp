@@ -2,9 +2,11 @@
 // The owner of an unfinished file: a process, on this machine or on another. In a folder on a network, or shared by
 // two containers, a process number proves nothing about a process elsewhere.
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace libchar::detail {
 
@@ -45,5 +47,34 @@ Lock share_whole_file(int descriptor);
 /// Removes temporary files whose owner has ended. The folder must be locked and have no journal, which may still need
 /// them.
 void remove_litter(const std::string& folder);
+
+// One writer at a time gives names in a folder: on this machine, in its containers, and on others that share
+// the folder.
+
+/// The file in the folder that is locked while files get their names. It says whose it is, and goes with its
+/// owner's work.
+inline constexpr const char* kLockFile = ".libchar-lock";
+
+class FolderLock {
+ public:
+  /// Waits for another run's, which takes milliseconds; throws Error(output) that says whose it is where that
+  /// lasts longer than `wait_s`, or where the folder lets no file be made.
+  explicit FolderLock(const std::filesystem::path& folder, double wait_s = 10);
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock();
+  /// False where the file system has no locks: the folder is not locked, and nobody can know whose its files
+  /// are.
+  bool held() const { return held_; }
+
+ private:
+  bool take();
+  std::string path_;
+  int descriptor_ = -1;
+  bool held_ = false;
+};
+
+/// Folders in which this process gave names without a lock, since their file systems have none.
+std::vector<std::string> folders_without_locks();
 
 }  // namespace libchar::detail

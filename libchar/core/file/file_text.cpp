@@ -1,7 +1,6 @@
 #include "libchar/core/file/file_text.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-#include "libchar/core/file/folder_lock.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

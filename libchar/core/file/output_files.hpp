@@ -2,7 +2,9 @@
 // The files of one job: all of them or none.
 
 #include <filesystem>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libchar/core/document/json.hpp"
@@ -71,5 +73,15 @@ std::vector<std::string> named_files(const std::string& document_file);
 /// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than others. Of a
 /// file, where it is one of them.
 void refuse_interrupted(const std::filesystem::path& folder_or_file);
+
+// File names from names that a log brought along.
+
+/// A file name for a channel: letters of any script, digits, '.', '_' and '-' are kept; blanks, other ASCII, controls and what is
+/// no UTF-8 become '_'; never empty, never starting with '.', at most 100 bytes of whole characters.
+std::string file_name_for(std::string_view channel);
+
+/// The same, with _2, _3… behind it when an earlier name differs by nothing or by capitals only (some file systems do not tell
+/// those apart). `taken` remembers the names given, in small letters.
+std::string unused_file_name_for(std::string_view channel, std::set<std::string>& taken);
 
 }  // namespace libchar

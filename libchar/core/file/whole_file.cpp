@@ -14,7 +14,6 @@
 
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/file/file_owner.hpp"
-#include "libchar/core/file/folder_lock.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/refusal.hpp"
 

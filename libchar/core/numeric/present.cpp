@@ -1,7 +1,6 @@
 #include "libchar/core/numeric/present.hpp"
 
 #include <cmath>
-#include <cstdint>
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/lanes.hpp"

@@ -10,14 +10,10 @@
 // agree with what the values inside let expect; a value's own part in mean and spread is taken out to first order there.
 #include "libchar/core/numeric/random_effects.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
-#include "libchar/core/numeric/weighted.hpp"
 
 namespace libchar {
 namespace {

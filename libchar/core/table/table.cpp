@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "libchar/core/table/detail/formats.hpp"
-#include "libchar/core/text/csv_cell.hpp"
 #include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"

@@ -5,8 +5,6 @@
 #include <algorithm>
 
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/text_table.hpp"
-#include "libchar/core/units.hpp"
 
 namespace libchar {
 namespace {

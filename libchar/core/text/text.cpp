@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-
 #include "libchar/core/text/utf8.hpp"
 
 namespace libchar {

@@ -4,7 +4,6 @@
 
 #include <cctype>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "libchar/figure/detail/cairo_pages.hpp"
+#include "libchar/figure/detail/drawing.hpp"
 
 #ifdef LIBCHAR_CAIRO
 #include <cairo-ft.h>

@@ -1,17 +1,14 @@
 // One curve is drawn with its interval, model, terms and coefficients; several with one colour, dash and marker each.
 
-#include "libchar/figure/detail/curve_figures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "libchar/characterize/compare/paired_channels.hpp"
+#include "libchar/characterize/compare/characterization_comparison.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/term_cells.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 
 namespace libchar {

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
+
 namespace libchar {
 
 struct Colour {
@@ -91,5 +93,14 @@ inline constexpr const char* kFigureFont = "Liberation Sans";
 
 /// A file; with a name, part of a page on which no other drawing has it.
 std::string svg_of(const Drawing& drawing, const std::string& name = "");
+
+// PDF and PNG, by Cairo: the only user of it.
+
+bool has_cairo();
+
+/// One page. A PDF has no date of its own (SOURCE_DATE_EPOCH gives it one), so that the same
+/// drawing gives the same bytes.
+std::string pdf_of(const Drawing& drawing, Findings& warnings);
+std::string png_of(const Drawing& drawing, double dpi, Findings& warnings);
 
 }  // namespace libchar

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/units.hpp"

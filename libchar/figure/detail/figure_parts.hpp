@@ -7,10 +7,14 @@
 #include <string_view>
 #include <vector>
 
+#include "libchar/core/document/schema.hpp"
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/figure/figure.hpp"
+#include "libchar/figure/figure_source.hpp"
 #include "libchar/figure/make_figure.hpp"
+#include "libchar/model/sensor_model.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
 
@@ -70,5 +74,95 @@ bool above_zero(double value);
 
 /// "deg/s" for what means the same; "U" where there is none; "" for a ratio.
 std::string usual_figure_unit(const std::string& unit);
+
+// Figures of characterizations, curves and models.
+
+Chart allan_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart psd_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart residuals_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+
+// Figures of a replay, from its report.
+
+Chart front_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart memory_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart ranking_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart timeline_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart error_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart window_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart weights_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart variances_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart faults_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+Chart error_allan_figure(std::span<const FigureSource> sources, const FigureOptions& options);
+
+// The report of a replay as figures show it.
+
+struct ShownReplay {
+  const ReplayReport* report = nullptr;
+  std::vector<const ReplayReport::Algorithm*> ranked;  ///< that ran, best first
+  std::vector<std::string> sensors;                    ///< their names
+  std::size_t input = 0;                               ///< its number
+  std::string unit, sensor_unit;                       ///< of that input; of the first sensor
+  double optimum = 0;                                  ///< of that input; NaN: not known
+  double end_s = 0;
+  double time_unit_s = 1;  ///< in which one says how long it took
+  std::string time_unit = "s";
+
+  const ReplayReport::Algorithm* find(const std::string& label) const;
+};
+
+/// With the unit and the optimum of the input that is asked for. Throws Error(usage) where there is none of the name.
+ShownReplay shown_replay(const FigureSource& source, const FigureOptions& options);
+
+/// Of what is drawn over the run: the horizontal axis, and the stretches of faults and windows.
+void set_time_axis(Chart& figure, const ShownReplay& replay, const FigureOptions& options);
+void add_run_marks(Chart& figure, const ShownReplay& replay);
+
+/// A track as a line between its smallest and largest values, with these as a band.
+FigureSeries track_series(const std::string& name,
+                          const Timeline& track,
+                          std::size_t series,
+                          const ShownReplay& replay,
+                          bool log,
+                          FigureLook look);
+
+/// The algorithms that are asked for; of nothing asked, those that the page shows first: the best,
+/// the best without a reference, the mean and the bounds.
+std::vector<const ReplayReport::Algorithm*> shown_algorithms(const ShownReplay& replay,
+                                                             const FigureOptions& options);
+
+/// The algorithm that is asked for; of nothing asked the best that `has` what is drawn. Null: nobody has it.
+const ReplayReport::Algorithm* tracked_algorithm(
+    const ShownReplay& replay,
+    const FigureOptions& options,
+    bool (*has)(const ReplayReport::Algorithm& algorithm));
+
+/// Patterns of algorithms have to match one that ran.
+void refuse_unmatched_methods(const ShownReplay& replay, const FigureOptions& options);
+
+// Curves of each kind of file that a figure is drawn from.
+
+/// `channels` of what allan and psd print, and of the parts of a characterization with these names.
+void add_allan_curves(FigureSource& out, const MapReader& document);
+void add_spectra(FigureSource& out, const MapReader& document);
+/// Of a fit: its residuals, and what belongs to the curves that were added before: coefficients, what was left out.
+void add_residuals(FigureSource& out, const MapReader& fit);
+void add_fit_to_curves(FigureSource& out, const MapReader& fit);
+void add_traces(FigureSource& out, const MapReader& trace);
+void add_simulated(FigureSource& out, const MapReader& verification);
+
+/// A table with a row a point (fit/curve_table.hpp).
+void add_table(FigureSource& out, const std::string& file, bool is_allan);
+/// What psd prints: frequency_hz and a column NAME[UNIT] a channel. Adds nothing where the file is none.
+void add_wide_spectra(FigureSource& out, const std::string& file);
+
+/// Allan curve and spectrum that a model implies, with its terms.
+void add_model(FigureSource& out, const SensorModel& model);
+
+/// "N = 0.00401 deg/s·√s": a coefficient as a mark says it.
+std::string mark_text(Term term, double value, const std::string& unit);
+
+/// "overlapping Allan deviation", "One-sided PSD".
+std::string spectrum_statistic(Sides sides, Scaling scaling);
 
 }  // namespace libchar

@@ -1,11 +1,10 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/figure/detail/sheet.hpp"
+#include "libchar/figure/detail/scale.hpp"
 
 namespace libchar {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/figure/detail/sheet.hpp"
+#include "libchar/figure/detail/scale.hpp"
 
 namespace libchar {
 namespace {

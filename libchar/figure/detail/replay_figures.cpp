@@ -1,7 +1,5 @@
 // Error against cost: lower and further left is better. A method is on the front where no other is better in both.
 
-#include "libchar/figure/detail/replay_figures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
-#include "libchar/figure/detail/shown_replay.hpp"
 
 namespace libchar {
 namespace {

@@ -9,8 +9,6 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
-#include "libchar/figure/detail/replay_figures.hpp"
-#include "libchar/figure/detail/shown_replay.hpp"
 
 namespace libchar {
 namespace {

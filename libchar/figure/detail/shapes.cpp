@@ -1,13 +1,11 @@
 // Series, bands, bars and stretches as paths.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
 
-#include "libchar/figure/detail/sheet.hpp"
+#include "libchar/figure/detail/scale.hpp"
 
 namespace libchar {
 namespace {

@@ -1,4 +1,3 @@
-#include "libchar/figure/detail/shown_replay.hpp"
 
 #include <fmt/format.h>
 

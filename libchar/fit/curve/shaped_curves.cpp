@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/allan/confidence.hpp"
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/fit/detail/band/low_pass.hpp"
 

@@ -12,7 +12,7 @@ double shaped_density(const NoiseFit& fit, double frequency_hz, double dt_s);
 /// Allan variance of the fit at averaging factor m.
 double shaped_allan_variance(const NoiseFit& fit, double m, double dt_s);
 
-/// Fills edf, intervals and reliability of every point (allan/confidence.hpp). A Gauss-Markov process counts as the power law that its
+/// Fills edf, intervals and reliability of every point (allan/confidence.cpp). A Gauss-Markov process counts as the power law that its
 /// Allan curve is nearest to at each averaging time.
 void add_fit_intervals(AllanCurve& curve, const NoiseFit& fit);
 

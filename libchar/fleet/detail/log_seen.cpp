@@ -53,4 +53,17 @@ bool result_counts(const fs::path& fleet, const FleetUnit& unit) {
   return !needs_log_seen(unit) || is_log_seen(fleet, unit.id, unit.log);
 }
 
+namespace fs = std::filesystem;
+
+std::string absolute_path(const std::string& named, const fs::path& folder) {
+  if (named.empty()) return "";
+  return (fs::path(named).is_absolute() ? fs::path(named) : folder / named)
+      .lexically_normal()
+      .string();
+}
+
+fs::path folder_of_file(const std::string& path) {
+  return fs::absolute(path).parent_path();
+}
+
 }  // namespace libchar

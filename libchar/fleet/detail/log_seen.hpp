@@ -10,6 +10,7 @@
 #include <string>
 
 #include "libchar/fleet/unit.hpp"
+#include "libchar/log/recording.hpp"
 
 namespace libchar {
 
@@ -31,5 +32,27 @@ bool is_log_seen(const std::filesystem::path& fleet, const std::string& id, cons
 
 /// Whether a result that is there counts for this unit.
 bool result_counts(const std::filesystem::path& fleet, const FleetUnit& unit);
+
+/// Absolute and without "..", so that one log has one name; `named` is relative to `folder`. "" stays "".
+std::string absolute_path(const std::string& named, const std::filesystem::path& folder);
+
+/// Of a manifest or a file of digests: what the paths in it are relative to.
+std::filesystem::path folder_of_file(const std::string& path);
+
+// What a unit is expected to take, from measurements of this machine:
+//   seconds = fixed * channels + sample * samples * channels + byte * bytes of text
+// `fixed` and `sample` from characterizing two simulated records in memory, `byte` from reading a simulated CSV file.
+
+struct CostModel {
+  double fixed_s = 0;        ///< a channel's fit and its part of the report
+  double sample_s = 0;       ///< a sample's curve and spectrum
+  double text_byte_s = 0;    ///< reading and hashing a byte of a text log
+  double binary_byte_s = 0;  ///< the same of a binary log
+
+  UnitCost of(const FleetUnit& unit, const LogInfo& head) const;
+};
+
+/// Measures, about a second.
+CostModel measured_cost();
 
 }  // namespace libchar

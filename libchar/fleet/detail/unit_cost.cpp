@@ -1,5 +1,3 @@
-#include "libchar/fleet/detail/unit_cost.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -13,6 +11,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
+#include "libchar/fleet/detail/log_seen.hpp"
 
 namespace libchar {
 namespace {

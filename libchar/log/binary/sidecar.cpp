@@ -9,7 +9,6 @@
 
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/fields.hpp"
-#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"

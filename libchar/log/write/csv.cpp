@@ -6,8 +6,8 @@
 
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/core/text/csv_cell.hpp"
 #include "libchar/core/text/double_text.hpp"
+#include "libchar/core/text/markup.hpp"
 #include "libchar/log/write/writers.hpp"
 
 namespace libchar {

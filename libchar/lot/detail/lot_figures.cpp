@@ -11,10 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <vector>
 
 #include "libchar/core/numeric/median.hpp"
-#include "libchar/lot/detail/statistics/length_class.hpp"
 
 namespace libchar {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <set>
 #include <tuple>
@@ -15,7 +14,7 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/lot/device_batches.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
 

@@ -12,20 +12,14 @@
 // Donner, Stat. Med. 27 (2008) 1693), with P the square that Paule and Mandel's equation gives:
 //   low² = P - hypot(P - low²(s known), P - P(s at its upper end)),   high² = P + hypot(high²(s known) - P, P(s at its lower end) - P)
 
-#include "libchar/lot/detail/quantity_values.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <vector>
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/distributions.hpp"
-#include "libchar/lot/detail/lot_figures.hpp"
+#include "libchar/lot/detail/lot_statistics.hpp"
 #include "libchar/lot/detail/statistics/grouped_effects.hpp"
-#include "libchar/lot/detail/statistics/grouped_lines.hpp"
-#include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "libchar/characterize/compare/reported_characterization.hpp"
 #include "libchar/core/document/document.hpp"
-#include "libchar/core/document/json_reader.hpp"
 #include "libchar/core/refusal.hpp"
 
 namespace libchar {

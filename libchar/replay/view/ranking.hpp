@@ -28,4 +28,14 @@ struct ParetoFront {
 };
 ParetoFront pareto_front(const ReplayResult& result);
 
+// A replay in a few sentences: which algorithm to use, and how sure that is.
+
+/// The sentences, the first says which to use. Bounds are never recommended; a method that learns
+/// from a reference is named as such, with the best one that does not; unresolved differences are
+/// said to be so. `costs`: with what was measured, which differs from run to run.
+std::vector<std::string> verdict_sentences(const ReplayResult& result, bool costs);
+
+/// What the optimum of this scene is: "fixed weights", "tilt filters".
+std::string optimum_of(const ReplayResult& result);
+
 }  // namespace libchar

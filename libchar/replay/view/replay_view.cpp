@@ -9,9 +9,8 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/fault_log.hpp"
 #include "libchar/replay/detail/tracks/thinned_tracks.hpp"
-#include "libchar/replay/view/verdict.hpp"
 #include "libchar/replay/view/words.hpp"
-#include "libchar/scene/text/scene_writer.hpp"
+#include "libchar/scene/scene_file.hpp"
 
 namespace libchar {
 namespace {

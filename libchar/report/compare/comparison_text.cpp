@@ -2,20 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/table/table.hpp"
 #include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/units.hpp"
 #include "libchar/log/recording_json.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/report_rows.hpp"
-#include "libchar/report/detail/tables/scores.hpp"
+#include "libchar/report/detail/tables/replay_tables.hpp"
 
 namespace libchar {
 namespace {

@@ -1,5 +1,3 @@
-#include "libchar/report/compare/which_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,13 +9,12 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/figure/compared_figure.hpp"
 #include "libchar/figure/draw_figure.hpp"
+#include "libchar/figure/make_figure.hpp"
+#include "libchar/report/compare/comparison_text.hpp"
 #include "libchar/report/detail/assets.hpp"
-#include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html/html_page.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/report_rows.hpp"
 #include "libchar/report/detail/tables/coefficients.hpp"
 
 namespace libchar {

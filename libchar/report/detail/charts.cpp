@@ -8,7 +8,7 @@
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/figure/draw_figure.hpp"
-#include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/html/html_tables.hpp"
 
 namespace libchar {
 namespace {

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
-#include "libchar/benchmark/bench_view.hpp"
+#include "libchar/benchmark/bench_document.hpp"
+#include "libchar/core/table/table.hpp"
 #include "libchar/figure/figure.hpp"
 #include "libchar/lot/control_chart.hpp"
-#include "libchar/lot/histogram.hpp"
+#include "libchar/report/html/fleet_report.hpp"
 
 namespace libchar {
 
@@ -54,5 +55,25 @@ std::string control_figure(const ControlChart& chart,
                            const std::vector<std::string>& beyond,
                            const std::vector<ChartBound>& bounds,
                            const std::string& about);
+
+// Cells and figures of a fleet's quantities.
+
+/// "of mems" behind a channel where there are several types.
+std::string group_title(const QuantityLot& quantity, const FleetLot& lot);
+
+/// "22.5 °C", to a tenth of a degree.
+std::string celsius_text(double t);
+
+/// Group, what, mean, spread, where 95 % lie, counted, not counted, batches, limit: of channels, of
+/// kinds of them, of both.
+Table quantities_table(const FleetLot& lot, std::optional<bool> of_kind = {});
+
+/// The Allan curves of all channels, a drawing for each quantity that they measure; "" where the
+/// recordings are not in memory.
+std::string allan_figures(const FleetReport& report);
+
+/// Histogram, control chart, batches, repeats, limit of one quantity; "" where nothing is known of
+/// it.
+std::string quantity_figures(const FleetReport& report, const QuantityLot& quantity);
 
 }  // namespace libchar

@@ -1,9 +1,7 @@
-#include "libchar/report/detail/escape.hpp"
-
 #include <nlohmann/json.hpp>
 
-#include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/report/detail/html/html_tables.hpp"
 
 namespace libchar {
 std::string html_text(std::string_view text) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 #include "libchar/core/file/crc32.hpp"
 #include "libchar/core/text/text.hpp"

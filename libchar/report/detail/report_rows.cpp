@@ -1,5 +1,7 @@
 #include "libchar/report/detail/report_rows.hpp"
 
+#include <cmath>
+
 #include "libchar/characterize/curves/curve_document.hpp"
 #include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/units.hpp"
@@ -103,6 +105,24 @@ const Fields<LimitReport>& limit_report_fields() {
       list_of<&T::judgements>("terms", judgement_fields()),
   });
   return rows;
+}
+
+// The JSON pieces that the verbs share; the keys are those of docs/json.md, which may grow and
+// never change.
+
+Json texts_json(const std::vector<std::string>& texts) {
+  Json out = Json::array();
+  for (const std::string& text : texts) out.push_back(json_text(text));
+  return out;
+}
+
+Json json_frame(std::string_view format) {
+  return {{"format", format}, {"version", 1}};
+}
+
+Json interval_json(const Interval& interval) {
+  if (std::isnan(interval.low) || std::isnan(interval.high)) return nullptr;
+  return Json::array({json_number(interval.low), json_number(interval.high)});
 }
 
 }  // namespace libchar

@@ -9,13 +9,9 @@
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/report/detail/assets.hpp"
-#include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html/fleet_figures.hpp"
-#include "libchar/report/detail/html/html_page.hpp"
+#include "libchar/report/detail/charts.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/html/pieces.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
-#include "libchar/report/text/coefficient_table.hpp"
+#include "libchar/report/detail/report_rows.hpp"
 
 namespace libchar {
 namespace {

@@ -5,15 +5,35 @@
 //   write_fleet_report({.records = records, .lot = &lot, .name = "March"}, folder, force);
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "libchar/characterize/compare/runs.hpp"
+#include "libchar/characterize/limits.hpp"
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/file/output_files.hpp"
+#include "libchar/core/text/text_table.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
+// All coefficients of a fleet as a table: one row per recording and channel, one column per property, for spreadsheets (CSV) and for NumPy (.npz,
+// one array per column). A quantity that no device has, has no column.
+
+/// Gets a file piece by piece.
+using TakeBytes = std::function<void(std::string_view)>;
+
+/// In the order of the lot. What is not known is an empty cell.
+void write_coefficients_csv(std::span<const DeviceRecord> records,
+                            const FleetLot& lot,
+                            const TakeBytes& take);
+
+/// The same columns; what is not known is NaN. The status of a quantity is a place in the array `status_words`.
+void write_coefficients_npz(std::span<const DeviceRecord> records,
+                            const FleetLot& lot,
+                            const TakeBytes& take);
 
 struct FleetReport {
   std::span<const DeviceRecord> records;
@@ -38,5 +58,22 @@ Json fleet_json(const FleetReport& report);
 std::string fleet_html(const FleetReport& report);
 /// `worst`: devices named at most.
 std::string fleet_text(const FleetReport& report, std::size_t width = 0, std::size_t worst = 20);
+
+// Runs of one sensor, pooled: what is written, shown and printed of them.
+
+/// Runs with what was found of them; `folders` hold the report of each run, relative to the folder of the page ("": none).
+struct RunsReport {
+  std::span<const Characterization> runs;
+  const PooledRuns* pooled = nullptr;
+  const LimitReport* limits = nullptr;  ///< of the pooled coefficients; null: none were given
+  std::vector<std::string> folders;
+  std::vector<std::string> command;
+};
+
+/// runs.html, runs.json and CHANNEL.sensor.yaml of the pooled coefficients.
+std::vector<OutputFile> runs_files(const RunsReport& report, const std::filesystem::path& folder);
+Json runs_json(const RunsReport& report);
+std::string runs_html(const RunsReport& report);
+std::string runs_text(const RunsReport& report, const TextLook& look = {});
 
 }  // namespace libchar

@@ -10,27 +10,20 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
 
-#include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/compare/verification.hpp"
-#include "libchar/characterize/verdict.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/assets.hpp"
-#include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html/html_page.hpp"
-#include "libchar/report/detail/html/html_plots.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/html/pieces.hpp"
 #include "libchar/report/detail/tables/coefficients.hpp"
-#include "libchar/report/json/json_report.hpp"
 
 namespace libchar {
 namespace {
 
-// One channel's section of the page. Every text that reaches the page goes through escape.hpp.
+// One channel's section of the page. Every text that reaches the page goes through escape.cpp.
 
 struct ChannelLayout {
   bool open = false;   ///< not folded

@@ -1,7 +1,5 @@
 // report.html of a replay: which algorithm to use, what it costs, and why one may believe it.
 
-#include "libchar/report/html/replay_html.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,14 +9,9 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/replay/view/replay_view.hpp"
 #include "libchar/report/detail/assets.hpp"
-#include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html/html_page.hpp"
-#include "libchar/report/detail/html/html_plots.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/html/pieces.hpp"
-#include "libchar/report/detail/replay_words.hpp"
 #include "libchar/report/detail/tables/replay_tables.hpp"
-#include "libchar/report/json/replay_json.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 
 namespace libchar {
 namespace {

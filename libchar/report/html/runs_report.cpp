@@ -1,29 +1,20 @@
-#include "libchar/report/html/runs_report.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/characterize/model_from_fit.hpp"
-#include "libchar/core/file/file_name.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/charts.hpp"
-#include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html/html_page.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/detail/html/pieces.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
 #include "libchar/report/detail/report_rows.hpp"
-#include "libchar/report/text/fit_text.hpp"
-#include "libchar/report/text/limits_text.hpp"
+#include "libchar/report/html/fleet_report.hpp"
+#include "libchar/report/text/characterization_text.hpp"
 
 namespace libchar {
 namespace {

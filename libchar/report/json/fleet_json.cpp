@@ -4,9 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document/coefficient_fields.hpp"
-#include "libchar/log/recording_json.hpp"
-#include "libchar/report/detail/html/pieces.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
+#include "libchar/report/detail/html/html_tables.hpp"
+#include "libchar/report/detail/report_rows.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 
 namespace libchar {

@@ -1,20 +1,21 @@
 // report.json: the documents of every verb in one frame, and what the report adds to them.
 
-#include "libchar/report/json/json_report.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
-#include "libchar/characterize/compare/verification.hpp"
 #include "libchar/characterize/curves/curve_document.hpp"
+#include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/core/file/output_files.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/model/model_file.hpp"
 #include "libchar/report/detail/report_rows.hpp"
+#include "libchar/report/html/html_report.hpp"
+#include "libchar/report/text/curves_text.hpp"
 
 namespace libchar {
 namespace {
@@ -165,6 +166,27 @@ Json json_report(const Characterization& result) {
 void add_times(Json& document, const Characterization& result) {
   if (std::isfinite(result.seconds))
     document["measured"] = {{"seconds", result.seconds}, {"work", work_json(result.work)}};
+}
+
+std::vector<OutputFile> report_files(const CharacterizationView& view,
+                                     const std::filesystem::path& folder) {
+  const Characterization& result = *view.result;
+  Json document = json_without_times(view);
+  std::vector<OutputFile> outputs = {
+      {(folder / "report.html").string(), html_report(view, document)}};
+  add_times(document, result);
+  outputs.push_back({(folder / "report.json").string(), ""});
+  outputs.push_back({(folder / "curves.csv").string(), csv_curves(view)});
+  std::set<std::string> taken;
+  for (const ChannelResult& c : result.channels) {
+    if (!c.fit) continue;
+    const std::string name = unused_file_name_for(c.channel.name, taken);
+    outputs.push_back({(folder / (name + ".sensor.yaml")).string(),
+                       model_yaml(sensor_model_from(c, result.log))});
+  }
+  name_files(document, outputs);
+  outputs[1].text = dump_json(document);
+  return outputs;
 }
 
 }  // namespace libchar

@@ -1,5 +1,3 @@
-#include "libchar/report/json/replay_json.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,6 +11,7 @@
 #include "libchar/fusion/registry.hpp"
 #include "libchar/replay/view/words.hpp"
 #include "libchar/report/detail/report_rows.hpp"
+#include "libchar/report/replay/replay_text.hpp"
 
 namespace libchar {
 namespace {

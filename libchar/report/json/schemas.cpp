@@ -13,7 +13,7 @@
 #include "libchar/replay/fusion_file.hpp"
 #include "libchar/replay/report/replay_report.hpp"
 #include "libchar/report/detail/report_rows.hpp"
-#include "libchar/scene/text/scene_writer.hpp"
+#include "libchar/scene/scene_file.hpp"
 
 namespace libchar {
 namespace {

@@ -11,11 +11,8 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording_json.hpp"
-#include "libchar/replay/report/replay_report.hpp"
 #include "libchar/replay/view/words.hpp"
-#include "libchar/report/detail/html/pieces.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
-#include "libchar/report/detail/replay_words.hpp"
+#include "libchar/report/detail/html/html_tables.hpp"
 #include "libchar/report/detail/report_rows.hpp"
 #include "libchar/report/detail/tables/replay_tables.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "libchar/core/document/json.hpp"
 #include "libchar/replay/fuse.hpp"
+#include "libchar/replay/report/replay_report.hpp"
 #include "libchar/replay/view/replay_view.hpp"
 
 namespace libchar {
@@ -32,5 +33,31 @@ std::string fuse_text(const FuseResult& result, const std::vector<std::string>& 
 Json fuse_json(const FuseResult& result,
                const std::vector<std::string>& command,
                const std::vector<std::string>& files);
+
+// report.html of a replay.
+
+/// One self-contained page: no network, opens from disk, prints. It carries the document of
+/// replay_json but for the time that the whole replay took.
+std::string replay_html(const ReplayView& view);
+/// The same with a view made for it alone.
+std::string replay_html(const ReplayResult& result);
+
+// report.json of a replay; the keys of docs/json.md, which may grow and never change.
+
+/// What report.json says, as `read_replay_report` reads it back; its head is left empty.
+ReplayReport replay_report(const ReplayView& view);
+
+/// {"format":"replay-report","version":1,…}. What a clock or the heap measured stands at
+/// "ns_per_sample", "learning_s" and "peak_bytes" of each algorithm and under "measured".
+Json replay_json(const ReplayView& view);
+/// The same with a view made for it alone.
+Json replay_json(const ReplayResult& result);
+
+/// Every fusion algorithm with what it needs and its options, as an array (docs/json.md).
+Json algorithms_json();
+
+/// What a clock or the heap measured, and what follows from it.
+inline constexpr const char* kMeasuredKeys[] = {
+    "measured", "verdict_with_costs", "ns_per_sample", "learning_s", "peak_bytes", "on_front"};
 
 }  // namespace libchar

@@ -1,14 +1,13 @@
-#include "libchar/report/text/coefficient_table.hpp"
-
 #include <cmath>
 #include <variant>
 #include <vector>
 
-#include "libchar/core/text/csv_cell.hpp"
 #include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/utf8.hpp"
 #include "libchar/report/detail/npz_writer.hpp"
+#include "libchar/report/html/fleet_report.hpp"
 
 namespace libchar {
 namespace {

@@ -12,9 +12,9 @@
 #include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/text/csv_cell.hpp"
-#include "libchar/report/detail/json_pieces.hpp"
-#include "libchar/spectrum/spectrum_interval.hpp"
+#include "libchar/core/text/markup.hpp"
+#include "libchar/report/detail/report_rows.hpp"
+#include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "libchar/characterize/characterization_view.hpp"
-#include "libchar/characterize/curves/log_pair_spectra.hpp"
 #include "libchar/characterize/curves/log_spectra.hpp"
 #include "libchar/characterize/log_devices.hpp"
 #include "libchar/core/document/json.hpp"

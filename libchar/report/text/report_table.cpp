@@ -7,7 +7,7 @@
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/report/detail/tables/coefficients.hpp"
-#include "libchar/report/detail/tables/scores.hpp"
+#include "libchar/report/detail/tables/replay_tables.hpp"
 
 namespace libchar {
 namespace {

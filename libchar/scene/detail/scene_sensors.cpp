@@ -1,11 +1,7 @@
 // The block `sensors` of a scene file.
 
-#include "libchar/scene/detail/scene_sensors.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "libchar/core/error.hpp"
@@ -14,7 +10,7 @@
 #include "libchar/log/channel_names.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
-#include "libchar/scene/detail/scene_parts.hpp"
+#include "libchar/scene/detail/scene_values.hpp"
 
 namespace libchar {
 namespace {
@@ -22,14 +18,6 @@ namespace {
 const std::string kNeedsModel = "a simulated sensor needs a model";
 const std::string kModelHint =
     "model: FILE.sensor.yaml, the keys of a model, or none for a perfect sensor";
-
-// Without the mistake of taking a letter's case for a difference.
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
-  return text;
-}
 
 // The channel that an entry of the list means; empty: it says none.
 std::string channel_word(const Document& entry) {
@@ -198,7 +186,7 @@ class SensorsReader {
       if (!index_.by_name.emplace(name, i).second)
         throw refusal("E0737", index_.places[i])
             .says("two sensors have the name {}", printable(name, 40));
-      if (!small.emplace(lower(name), i).second)
+      if (!small.emplace(ascii_lower(name), i).second)
         scene_.warnings.add("case_clash",
                             "names of sensors differ by capitals only",
                             top_.where(*index_.places[i].node));

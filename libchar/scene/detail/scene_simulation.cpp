@@ -1,7 +1,5 @@
 // The blocks `recording` and `simulate` of a scene file.
 
-#include "libchar/scene/detail/scene_simulation.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
-#include "libchar/scene/detail/scene_parts.hpp"
+#include "libchar/scene/detail/scene_values.hpp"
 
 namespace libchar {
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/scene/detail/scene_parts.hpp"
 
 namespace libchar {
 

@@ -1,8 +1,6 @@
 // The scene as YAML: the rows of scene_fields, and what ties the blocks together (names of sensors for
 // their indices, paths for files).
 
-#include "libchar/scene/text/scene_writer.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,8 +12,7 @@
 #include "libchar/model/model_fields.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_values.hpp"
-#include "libchar/scene/scene.hpp"
-#include "libchar/scene/scene_paths.hpp"
+#include "libchar/scene/scene_file.hpp"
 
 namespace libchar {
 

@@ -12,7 +12,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/spelling.hpp"
-#include "libchar/scene/detail/scene_simulation.hpp"
+#include "libchar/scene/detail/scene_values.hpp"
 
 namespace libchar {
 

@@ -21,7 +21,7 @@
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/simulate/detail/kasdin.hpp"
+#include "libchar/simulate/detail/flicker.hpp"
 
 namespace libchar {
 namespace {

@@ -5,13 +5,12 @@
 // even bins of the second half in the place of that half, odd ones in the place of the first. So a
 // record of n samples in seven segments needs .375 n numbers beside it, and not .875 n.
 
-#include "libchar/spectrum/detail/halves_in_place.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
 #include "libchar/core/parallel/parallel.hpp"
+#include "libchar/spectrum/detail/half_pass.hpp"
 
 namespace libchar {
 

@@ -3,11 +3,16 @@
 // spectrum.
 
 #include <complex>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "libchar/spectrum/detail/half_rows.hpp"
+#include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/fft.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 #include "libchar/spectrum/welch.hpp"
@@ -94,4 +99,33 @@ class Average {
   bool moves_ = false, moves_little_ = false;
 };
 
+// How long the segments of a record are.
+
+/// A quarter of the record as in [RV app. A], or what the caller asked for; halved until enough
+/// segments are whole, which is noted. Throws Error(numeric) where none of 8 samples is.
+std::uint64_t choose_segment(std::span<const double> record,
+                             const WelchOptions& options,
+                             std::vector<std::string>& notes);
+
 }  // namespace libchar::welch_detail
+
+// What is kept from one Welch spectrum to the next: halves of one length and a sum to go with each.
+
+namespace libchar {
+
+struct WelchWorkspace::State {
+  struct Piece {
+    HalfSegments halves;
+    HalfSegments::SumsPointer sums;
+  };
+  half_segments::RowPools pools;
+
+  Piece take(std::size_t segment);
+  void give_back(Piece piece);
+
+ private:
+  std::mutex mutex_;
+  std::vector<Piece> idle_;
+};
+
+}  // namespace libchar

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "libchar/export/detail/target_list.hpp"
-#include "libchar/export/sensor_group.hpp"
+#include "libchar/export/exports.hpp"
 
 namespace libchar {
 namespace {

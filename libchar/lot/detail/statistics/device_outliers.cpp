@@ -5,13 +5,12 @@
 //   p(r | data) ~ p(r) (1 + C r)^(-f_b/2) S(r)^(-f/2),   S(r) = f_b MS_b / (1 + C r) + f_w MS_w,   f = f_b + f_w
 // and the deviation of a device is Student's t of f degrees of freedom for each r. p(r): 0.4 for r = 0, the rest
 // evenly in ln r from .05 to 1000. Alarms and power: tests/lot/device_outliers_test.cpp.
-#include "libchar/lot/detail/statistics/device_outliers.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/lot/detail/statistics/grouped_effects.hpp"
 
 namespace libchar {
 namespace {

@@ -9,10 +9,7 @@
 
 #include <algorithm>
 
-#include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/distributions.hpp"
-#include "libchar/core/numeric/weighted.hpp"
-#include "libchar/lot/detail/statistics/within_spread.hpp"
 
 namespace libchar {
 namespace {

@@ -12,20 +12,16 @@
 // R. Stat. Soc. B 49 (1987) 1), interval by its fall of 1.92. Means: profiles over the spread, with
 // the fall n/2 ln(1 + t²/(n - 1)) that makes them Student's t where the values are known. Of what
 // many fits find: docs/theory/lots.md.
-#include "libchar/lot/detail/statistics/lognormal_effects.hpp"
-
 #include <Eigen/Dense>
-#include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <vector>
 
 #include "libchar/core/numeric/distributions.hpp"
-#include "libchar/lot/detail/statistics/length_class.hpp"
+#include "libchar/lot/detail/lot_figures.hpp"
 
 namespace libchar {
 namespace {

@@ -1,4 +1,3 @@
-#include "libchar/report/detail/html/fleet_figures.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +11,6 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/charts.hpp"
-#include "libchar/report/detail/escape.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
 
 namespace libchar {

@@ -1,19 +1,16 @@
 // The figures of one channel's section: titles, axes, captions that say what is drawn. page.js
 // draws into them.
 
-#include "libchar/report/detail/html/html_plots.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
-#include <string>
 
 #include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/remedies.hpp"
-#include "libchar/report/detail/escape.hpp"
+#include "libchar/report/detail/html/html_tables.hpp"
 
 namespace libchar {
 namespace {

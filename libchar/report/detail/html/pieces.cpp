@@ -1,4 +1,3 @@
-#include "libchar/report/detail/html/pieces.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,13 +6,10 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/text_table.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/replay/view/words.hpp"
-#include "libchar/report/detail/escape.hpp"
-#include "libchar/report/detail/html/html_page.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
-#include "libchar/report/text/limits_text.hpp"
+#include "libchar/report/text/characterization_text.hpp"
 
 namespace libchar {
 
