@@ -43,7 +43,7 @@ Case any_case(int least = 3, Eigen::Index instants = 60) {
   return out;
 }
 
-const Entry& any_of(const std::vector<std::string>& names) {
+const fusion::Entry& any_of(const std::vector<std::string>& names) {
   return algorithm(*rc::gen::elementOf(names));
 }
 
@@ -60,7 +60,7 @@ const std::vector<std::string> kBlind = {"mean",
                                          "blind-calibration",
                                          "kalman-takens"};
 
-::test::Run run_of(const Entry& entry, const Case& c, Eigen::Index block = 1 << 20) {
+::test::Run run_of(const fusion::Entry& entry, const Case& c, Eigen::Index block = 1 << 20) {
   const auto runner = entry.make(c.array, Settings(entry.options));
   runner->finish_learning();
   return ::test::run(*runner, c.y, c.array.inputs(), block);
@@ -105,7 +105,7 @@ TEST_CASE("property: a mean lies between the samples of its instant") {
 TEST_CASE("property: weights of a mean are not negative and sum to one") {
   holds([] {
     const Case c = any_case();
-    const Entry& entry = any_of(kMeans);
+    const fusion::Entry& entry = any_of(kMeans);
     const auto runner = entry.make(c.array, Settings(entry.options));
     runner->finish_learning();
     ::test::run(*runner, c.y);
@@ -118,7 +118,7 @@ TEST_CASE("property: weights of a mean are not negative and sum to one") {
 TEST_CASE("property: an input moved by 2^20 moves the estimate alike") {
   holds([] {
     const Case c = any_case();
-    const Entry& entry = any_of(kBlind);
+    const fusion::Entry& entry = any_of(kBlind);
     RC_ASSERT(largest_gap(run_of(entry, moved(c, 0x1p20)).x.array() - 0x1p20, run_of(entry, c).x) <
               1e-8);
   });
@@ -126,7 +126,7 @@ TEST_CASE("property: an input moved by 2^20 moves the estimate alike") {
 TEST_CASE("property: another unit is another unit of the estimate") {
   holds([] {
     const Case c = any_case();
-    const Entry& entry = any_of(kBlind);
+    const fusion::Entry& entry = any_of(kBlind);
     const int power = *rc::gen::inRange(-100, 100);
     const Eigen::MatrixXd plain = run_of(entry, c).x;
     RC_ASSERT(largest_gap(run_of(entry, in_unit(c, power)).x * std::ldexp(1.0, -power), plain) <=
@@ -136,7 +136,7 @@ TEST_CASE("property: another unit is another unit of the estimate") {
 TEST_CASE("property: the order of the channels is none of a mean's business") {
   holds([] {
     const Case c = any_case();
-    const Entry& entry = any_of(kMeans);
+    const fusion::Entry& entry = any_of(kMeans);
     RC_ASSERT(largest_gap(run_of(entry, turned_round(c)).x, run_of(entry, c).x) < 1e-9);
   });
 }
@@ -144,7 +144,7 @@ TEST_CASE("property: blocks of any size give the same bits, missing samples or n
   holds([] {
     Case c = any_case();
     sprinkle_gaps(c, *rc::gen::element(5, 50));
-    const Entry& entry = any_of(kBlind);
+    const fusion::Entry& entry = any_of(kBlind);
     RC_ASSERT(
         ::test::same_values(run_of(entry, c, *rc::gen::inRange(1, 40)).x, run_of(entry, c).x));
   });
@@ -183,7 +183,7 @@ TEST_CASE("property: fused variance is no larger than the best sensor's") {
 TEST_CASE("property: all noise levels times a constant leave the estimate") {
   holds([] {
     Case c = any_case();
-    const Entry& entry =
+    const fusion::Entry& entry =
         algorithm(*rc::gen::element<std::string>("inverse-variance", "covariance-intersection"));
     const Eigen::MatrixXd before = run_of(entry, c).x;
     c.array.noise_levels *= *between(0.1, 10);
@@ -229,7 +229,8 @@ TEST_CASE("property: what all inputs add is added to their estimates") {
     const Eigen::Vector2d b(*between(-5, 5), *between(-5, 5));
     Case added = c;
     added.y.colwise() += c.array.observation_matrix * b;
-    const Entry& entry = algorithm(*rc::gen::element<std::string>("mean", "inverse-variance"));
+    const fusion::Entry& entry =
+        algorithm(*rc::gen::element<std::string>("mean", "inverse-variance"));
     const Eigen::MatrixXd expected = run_of(entry, c).x.colwise() + b;
     RC_ASSERT(largest_gap(run_of(entry, added).x, expected) < 1e-8);
   });
@@ -260,7 +261,7 @@ TEST_CASE("property: who cannot run on an array says so in a sentence, who can r
   holds([] {
     const Case c = any_case(1, 5);
     const auto all = algorithms();
-    const Entry& entry =
+    const fusion::Entry& entry =
         all[static_cast<std::size_t>(*rc::gen::inRange(0, static_cast<int>(all.size())))];
     const std::string why = why_not(*entry.description, c.array);
     if (!why.empty()) {

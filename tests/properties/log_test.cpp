@@ -100,20 +100,20 @@ std::string any_table() {
   return out;
 }
 
-struct Reading {
+struct BlockReading {
   LogInfo info;
   std::vector<Record> samples;
   std::string refused;
 };
 
-Reading reading_of(const std::string& bytes, std::size_t block, int threads) {
+BlockReading reading_of(const std::string& bytes, std::size_t block, int threads) {
   const test::MemoryLog log(bytes);
   ReadOptions options;
   options.format = "csv";
   options.block_bytes = block;
   options.threads = threads;
   options.rate_hz = 10;
-  Reading out;
+  BlockReading out;
   try {
     Recording recording = read_recording(log.path(), options);
     out.info = std::move(recording.info);
@@ -166,7 +166,7 @@ TEST_CASE(
     "property: whatever a table holds, it is read or refused in a sentence, and every row is "
     "accounted for") {
   holds([] {
-    const Reading read = reading_of(any_table(), 1 << 16, 1);
+    const BlockReading read = reading_of(any_table(), 1 << 16, 1);
     if (!read.refused.empty()) return;
     RC_ASSERT(read.info.rows ==
               read.info.rows_used + read.info.rows_dropped + read.info.rows_outside);
@@ -176,10 +176,10 @@ TEST_CASE(
 TEST_CASE("property: blocks and threads change nothing of what is read or refused") {
   holds([] {
     const std::string table = any_table();
-    const Reading whole = reading_of(table, 1 << 16, 1),
-                  parts = reading_of(table,
-                                     static_cast<std::size_t>(*rc::gen::inRange(1, 60)),
-                                     *rc::gen::inRange(1, 4));
+    const BlockReading whole = reading_of(table, 1 << 16, 1),
+                       parts = reading_of(table,
+                                          static_cast<std::size_t>(*rc::gen::inRange(1, 60)),
+                                          *rc::gen::inRange(1, 4));
     RC_ASSERT(parts.refused == whole.refused);
     RC_ASSERT(same_samples(parts.samples, whole.samples));
     RC_ASSERT(parts.info.rows_dropped == whole.info.rows_dropped);
@@ -188,7 +188,7 @@ TEST_CASE("property: blocks and threads change nothing of what is read or refuse
 TEST_CASE("property: bytes of any kind are read or refused, never both and never neither") {
   holds([] {
     const std::string bytes = *rc::gen::string<std::string>();
-    const Reading read = reading_of(bytes, 64, 1);
+    const BlockReading read = reading_of(bytes, 64, 1);
     RC_ASSERT(read.refused.empty() == !read.samples.empty());
   });
 }
