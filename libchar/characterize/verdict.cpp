@@ -13,8 +13,9 @@ namespace {
 
 std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   const Coefficient& c = fit[term];
-  const TermCells cells = term_cells(c, term, unit);
-  const std::string name = cells.title + " " + cells.letter;
+  const bool clock = fit.flicker_phase.has_value();
+  const TermCells cells = term_cells(c, term, unit, clock);
+  const std::string name = clock ? cells.title : cells.title + " " + cells.letter;
   const std::string value =
       said(cells.own) + (cells.field.empty() ? "" : " (" + said(cells.field.front()) + ")");
   switch (c.status) {
