@@ -492,8 +492,8 @@ std::size_t points_in_octave(const DigitisedCurve& curve, std::size_t left_out) 
   return count;
 }
 
-/// Neighbours together, the slow end (few of the points, much of the information) as it is. Of a spectrum that states no
-/// uncertainty powers are averaged: the mean of their logarithms would be low.
+/// Neighbours together, the slow end (few of the points, much of the information) as it is. Of a
+/// spectrum that states no uncertainty powers are averaged: the mean of their logarithms is low.
 DigitisedCurve grouped(const DigitisedCurve& curve) {
   DigitisedCurve out = curve;
   for (auto* values : {&out.x, &out.y, &out.relative_sd}) values->clear();

@@ -155,9 +155,11 @@ std::string weigh_by_likely_record(const DigitisedCurve& curve,
   double most = -n * (2 * std::log(likely) + 1), duration_s = 0;  // errors of reading alone
   for (const double longer : {2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 100.0, 1000.0}) {
     const RecordScatter scatter(few, longer * curve.x.back());
+    CurveProblem weighed = looked;
+    const Mixture about = solve_weighed(scatter, 3 * kReading, offered, 1, start, weighed).theta;
     for (const double reading : {kReading / 2, 3 * kReading, 15 * kReading}) {
-      CurveProblem weighed = looked;
-      const double sum = solve_weighed(scatter, reading, offered, 2, start, weighed).sum_of_squares;
+      scatter.weigh(about, reading, weighed);
+      const double sum = solve_curve(weighed, only_positive(about)).sum_of_squares;
       const double log_likelihood = 2 * weighed.whitening.diagonal().array().log().sum() - sum;
       if (!(log_likelihood > most)) continue;
       most = log_likelihood;
