@@ -149,7 +149,7 @@ RunsTest tested(const RunBins& runs,
 }
 
 /// Names runs one by one: an unlike one bends the common coefficients, and all others would look
-/// unlike beside it. Whether the rest is alike.
+/// unlike beside it. Whether the rest is alike, and most of them.
 bool name_unlike(const PooledFit& pooled,
                  const PoolOptions& options,
                  RunsTest test,
@@ -167,7 +167,7 @@ bool name_unlike(const PooledFit& pooled,
     place.erase(place.begin() + static_cast<std::ptrdiff_t>(worst));
     test = tested(rest, pooled.terms, options, random);
   }
-  return !(test.p < options.probability);
+  return !(test.p < options.probability) && 2 * rest.size() > pooled.runs.size();
 }
 
 /// Fills the ratios, their p, and who differs. Whether those that do not are alike.
