@@ -150,7 +150,15 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
       "(default: " +
           std::string(a.options.ten_a_decade ? "ten" : "octave") + ")");
   verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
-  verb.add_duration("--tau-max", a.tau_max_s, "longest averaging time (default: half the record)");
+  verb.add_duration(
+      "--tau-max",
+      a.tau_max_s,
+      "longest averaging time (default: half the record; Theo three quarters, mtie and "
+      "tierms all of it)");
+  verb.add_enum("--bias",
+                a.options.allan.bias,
+                "bias of mtotdev, ttotdev and htotdev: taken out as SP 1065 states it, or none, as "
+                "allantools leaves it (default: sp1065)");
   verb.add_flag(
       "--full-overlap",
       a.options.full_overlap,

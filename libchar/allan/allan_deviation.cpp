@@ -153,8 +153,11 @@ std::vector<std::uint64_t> averaging_factors(const AllanOptions& options,
   const DeviationRow& row = deviation_row(options.type);
   std::optional<TheoGrid> theo;
   if (row.family == DeviationFamily::theo) theo.emplace(row, options.grid, samples);
-  const double tau_max =
-      options.tau_max_s > 0 ? options.tau_max_s : duration * (theo ? kTheoReach : 0.5);
+  const bool interval = row.family == DeviationFamily::interval;
+  const double tau_max = options.tau_max_s > 0 ? options.tau_max_s
+                                               : duration * (interval ? 1
+                                                             : theo   ? kTheoReach
+                                                                      : 0.5);
   // A hair of slack: tau_max and tau_min are decimal numbers, the multiples of dt are not.
   const double slack = 1 + 1e-9;
   double reach = std::max(1.0, std::floor(tau_max / dt_s * slack * (theo ? theo->stretch() : 1)));
@@ -428,6 +431,7 @@ AllanCurve allan_deviation(std::span<const double> record,
   };
   AllanCurve curve;
   curve.type = options.type;
+  curve.without = options.bias;
   curve.dt_s = dt_s;
   curve.samples = rate_samples(record.size());
   curve.missing = not_finite(record);

@@ -36,7 +36,10 @@ struct AllanPoint {
 };
 
 struct AllanCurve {
+  /// Whether `add_intervals` takes out the bias that SP 1065 states for the modified and Hadamard total deviations
+  enum class Bias { sp1065, none };
   DeviationType type = DeviationType::oadev;
+  Bias without = Bias::sp1065;
   double dt_s = 1;
   std::uint64_t samples = 0;  ///< rate samples, missing ones included
   std::uint64_t missing = 0;
@@ -47,15 +50,19 @@ struct AllanCurve {
   std::vector<std::string> notes;  ///< what was approximated or left out
 };
 
+template <>
+inline constexpr auto enum_table<AllanCurve::Bias> = enum_words<AllanCurve::Bias, "sp1065 none">;
+
 struct AllanOptions {
   DeviationType type = DeviationType::oadev;
+  AllanCurve::Bias bias = AllanCurve::Bias::sp1065;  ///< taken out
   DataKind data = DataKind::rate;
   TauGrid grid = TauGrid::octave;
   /// for TauGrid::list; rounded to multiples of dt, each used once; must be > 0
   std::vector<double> taus_s;
   std::vector<std::uint64_t> more_factors;  ///< next to those of the grid, as far as they go
   double tau_min_s = 0;                     ///< 0 = dt
-  /// 0 = T/2, of the Theo family 3/4 T (each type's own limit is applied as well)
+  /// 0 = T/2, of the Theo family 3/4 T, of MTIE and TIE rms T (each type's own limit is applied as well)
   double tau_max_s = 0;
   /// 0: every term; d: every (m/d)-th from m = 2 d on, where none of a rate's samples is missing
   std::uint64_t stride_divisor = 0;
@@ -84,8 +91,13 @@ AllanCurve limited(const AllanCurve& octaves, const AllanOptions& options);
 
 /// Fills edf, ci68, ci95 and reliable of every point for the fitted mixture, and takes the bias
 /// that SP 1065 states for it out of the modified and Hadamard total deviations (`bias`: raw
-/// variance over this one). MTIE and TIE rms have no interval: edf stays 0.
+/// variance over this one), unless it is to stay. MTIE and TIE rms have no interval: edf stays 0.
 void add_intervals(AllanCurve& curve, const Mixture& theta);
+
+namespace detail {
+/// Degrees of freedom, and the intervals that follow from them.
+void set_dof(AllanPoint& point, double edf);
+}  // namespace detail
 
 // Averaging times between the octaves of a curve, for plots: ten a decade.
 

@@ -30,7 +30,11 @@ namespace {
 //                 m = 1. The formula of SP 1065, b T/tau - c, promises up to 60 % more at the
 //                 longest times and twice as many at m = 2.
 //   HTOT          likewise from the overlapping Hadamard deviation.
-//   Theo1, TheoBR SP 1065, 5.4.5, r = 3/4 m of N phase points, met by simulation to 15 % for r up to N/3
+//   Theo1         SP 1065, 5.4.5, r = 3/4 m of N phase points, met by simulation to 15 % for r up to N/3
+//   TheoBR        Theo1's times the mean ratio that takes its bias out, which goes over averaging times up
+//                 to half of the record and so has f_R degrees of freedom, however long the record is:
+//                 1/f = 1/f_1 + 1/f_R + 2 c / sqrt(f_1 f_R), c their correlation at r/N (4000 records of
+//                 512 samples and 8000 of 128; docs/theory/allan.md)
 //   TheoH         that of its parts
 
 constexpr std::size_t kExactPoints = 32;
@@ -38,6 +42,7 @@ constexpr std::size_t kFarLags = 24;  // in m; covariances beyond do not count
 
 using Table = PerTerm;  // white, flicker, walk of the rate, white of the phase
 constexpr Table kModifiedBias = {0.73, 0.70, 0.69, 0.94}, kHadamardBias = {0.995, 0.851, 0.771, 1};
+constexpr Table kOverRatioDof = {1 / 20.0, 1 / 23.0, 1 / 28.0, 0};  // white phase: thousands
 constexpr Table kModifiedGain = {1.15, 1.09, 1.06, 1.42}, kHadamardGain = {1.43, 1.24, 1.15, 1};
 
 double weighted(const Table& value, const PerTerm& share, double without) {
@@ -137,6 +142,13 @@ double theo_dof(const Mixture& theta, double r, double n, double dt_s) {
   return weighted(dof, allan_shares(theta, r, dt_s), 1);
 }
 
+double bias_removed_dof(const Mixture& theta, double r, double n, double dt_s) {
+  const double theo = theo_dof(theta, r, n, dt_s);
+  const double ratio = weighted(kOverRatioDof, allan_shares(theta, n / 4, dt_s), kOverRatioDof[0]);
+  const double together = std::clamp(2.2 * r / n - 0.25, -0.1, 1.0);
+  return 1 / (1 / theo + ratio + 2 * together * std::sqrt(ratio / theo));
+}
+
 // Expected modified or Hadamard total variance over the modified or Hadamard one, for the mixture
 // at the point: as SP 1065, 5.4, states it. 1 of all others.
 double family_bias(const DeviationRow& row,
@@ -161,7 +173,8 @@ double family_dof(const DeviationRow& row,
     return std::max(1.0, parabolic_dof(theta, m, static_cast<double>(point.terms), dt_s));
   if (row.type == DeviationType::theoh && point.m <= last_allan_factor(samples))
     return equivalent_dof(DeviationType::oadev, theta, point.m, point.terms, 1, dt_s);
-  return theo_dof(theta, point.tau_s / dt_s, static_cast<double>(samples + 1), dt_s);
+  const auto dof = row.type == DeviationType::theo1 ? theo_dof : bias_removed_dof;
+  return std::max(1.0, dof(theta, point.tau_s / dt_s, static_cast<double>(samples + 1), dt_s));
 }
 
 constexpr double kOneSigma = 0.6827, kTwoSided = 0.95;
@@ -181,27 +194,36 @@ void note_total_bias(AllanCurve& curve, const Mixture& theta) {
       " at the longest averaging time (not corrected); its degrees of freedom are approximate");
 }
 
-void take_bias_out(AllanPoint& point, double bias) {
-  point.deviation *= std::sqrt(point.bias / bias);
-  point.bias = bias;
-}
-
-void note_bias(AllanCurve& curve) {
-  double least = 1;
-  for (const AllanPoint& point : curve.points) least = std::min(least, point.bias);
+/// The least of a curve; nothing to say of 1.
+void note_bias(AllanCurve& curve, double least) {
   if (least < 1)
-    curve.notes.push_back("the variances are divided by their expected bias, down to " +
+    curve.notes.push_back((curve.without == AllanCurve::Bias::sp1065
+                               ? "the variances are divided by their expected bias, down to "
+                               : "the variances keep their expected bias, down to ") +
                           brief_text(least, 3) + " (SP 1065, for the noise that is there)");
 }
 
 }  // namespace
 
+void detail::set_dof(AllanPoint& point, double edf) {
+  point.edf = std::max(1.0, edf);
+  point.ci68 = chi_square_interval(point.deviation, point.edf, kOneSigma);
+  point.ci95 = chi_square_interval(point.deviation, point.edf, kTwoSided);
+  point.reliable = point.edf >= kReliableDof;
+}
+
 void add_intervals(AllanCurve& curve, const Mixture& theta) {
   const DeviationRow& row = deviation_row(curve.type);
   if (row.without_interval()) return;
   const bool differences = row.family == DeviationFamily::differences;
+  double least_bias = 1;
   for (AllanPoint& point : curve.points) {
-    take_bias_out(point, family_bias(row, theta, point, curve.dt_s));
+    const double bias = family_bias(row, theta, point, curve.dt_s);
+    least_bias = std::min(least_bias, bias);
+    if (curve.without == AllanCurve::Bias::sp1065) {
+      point.deviation *= std::sqrt(point.bias / bias);
+      point.bias = bias;
+    }
     Mixture with_added = theta;
     with_added[static_cast<std::size_t>(Term::white)] += point.added * point.tau_s;
     point.edf =
@@ -209,13 +231,10 @@ void add_intervals(AllanCurve& curve, const Mixture& theta) {
             ? equivalent_dof(
                   curve.type, with_added, point.m, point.terms, stride_of(curve, point), curve.dt_s)
             : family_dof(row, theta, point, curve.used, curve.dt_s);
-    point.edf = std::max(1.0, point.edf / (point.inflation * point.inflation));
-    point.ci68 = chi_square_interval(point.deviation, point.edf, kOneSigma);
-    point.ci95 = chi_square_interval(point.deviation, point.edf, kTwoSided);
-    point.reliable = point.edf >= kReliableDof;
+    detail::set_dof(point, point.edf / (point.inflation * point.inflation));
   }
   if (differences && row.reflected) note_total_bias(curve, theta);
-  note_bias(curve);
+  note_bias(curve, least_bias);
 }
 
 }  // namespace libchar

@@ -16,7 +16,10 @@
 // x = a - b, y = b - c, z = c - a with measurement noises of their own, d the second differences,
 //   v_a = - <d_x d_z> / (2 tau^2)
 // as their noises have no covariance. Without such noise x + y + z = 0, and it is the
-// three-cornered hat.
+// three-cornered hat. The variance of a mean product of nu degrees of freedom is
+//   ( v_x v_z + v_a^2 ) / nu,    v_x = <d_x^2> / (2 tau^2): the noise of the measurements is in these,
+// nu that of the power law that the difference follows at tau (noise_type.hpp): a counter's white
+// phase has many more than a device's white frequency.
 
 #include <fmt/format.h>
 
@@ -26,6 +29,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
+#include "libchar/allan/noise_type.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 
@@ -119,12 +123,14 @@ HatPoint hat_point(const AllanPoint& like, double variance, double sd) {
   return point;
 }
 
-double dof_of(DeviationType type, const AllanPoint& point, double dt_s) {
+double dof_of(DeviationType type, const AllanPoint& point, double dt_s, Term noise = Term::white) {
   const DeviationRow& row = deviation_row(type);
   const bool exact = row.family == DeviationFamily::differences;
   const std::uint64_t stride = exact && !row.overlapping ? point.m : 1;
+  Mixture theta{};
+  theta[static_cast<std::size_t>(noise)] = 1;
   return equivalent_dof(exact ? type : DeviationType::oadev,
-                        {1},
+                        theta,
                         point.m,
                         std::max<std::uint64_t>(1, point.terms),
                         stride,
@@ -227,6 +233,18 @@ MeanProduct mean_product(const std::vector<double>& a,
   return out;
 }
 
+/// The term whose degrees of freedom a difference has at an averaging factor: by its noise type there, or the last
+/// one that its readings were enough for.
+Term noise_at(const std::vector<NoiseType>& types, std::uint64_t m) {
+  int alpha = 0;
+  for (const NoiseType& type : types)
+    if (type.m <= m) alpha = type.alpha;
+  return alpha > 0    ? Term::quantization
+         : alpha == 0 ? Term::white
+         : alpha < -1 ? Term::walk
+                      : Term::flicker;
+}
+
 }  // namespace
 
 CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> differences,
@@ -244,22 +262,30 @@ CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> dif
       throw usage_error("E0870").says("differences of rates are taken without missing samples");
   CorneredHat hat;
   hat.devices.resize(3);
+  std::array<std::vector<NoiseType>, 3> types;
+  for (std::size_t i = 0; i < 3; ++i) types[i] = lag1_noise_types(x[i], dt_s);
   for (const AllanPoint& like : allan_deviation(differences[0], dt_s, options).points) {
-    std::array<double, 3> v{};
-    std::uint64_t terms = like.terms;
-    for (std::size_t i = 0; i < 3;
-         ++i) {  // device i is in the differences i and i - 1, with either sign
-      const MeanProduct product =
-          mean_product(x[i], x[(i + 2) % 3], detail::in_memory(like.m), like.tau_s);
-      v[i] = -product.value;
-      terms = std::min(terms, product.terms);
+    const auto product = [&](std::size_t i, std::size_t j) {
+      return mean_product(x[i], x[j], detail::in_memory(like.m), like.tau_s);
+    };
+    std::array<double, 3> own{}, dof{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const MeanProduct square = product(i, i);
+      AllanPoint point = like;
+      point.terms = square.terms;
+      own[i] = square.value;
+      dof[i] = dof_of(DeviationType::oadev, point, dt_s, noise_at(types[i], like.m));
     }
-    const std::vector<double> all(v.begin(), v.end());
-    AllanPoint point = like;
-    point.terms = terms;
-    const double dof = dof_of(DeviationType::oadev, point, dt_s);
-    for (std::size_t i = 0; i < 3; ++i)
-      hat.devices[i].push_back(hat_point(point, v[i], hat_variance_sd(all, i, dof)));
+    for (std::size_t i = 0; i < 3; ++i) {  // in the differences i and i - 1, with either sign
+      const std::size_t j = (i + 2) % 3;
+      const MeanProduct both = product(i, j);
+      AllanPoint point = like;
+      point.terms = both.terms;
+      const double fewer = std::min(dof[i], dof[j]),
+                   of_device = std::min(fewer, dof_of(DeviationType::oadev, point, dt_s));
+      const double sd = std::sqrt(own[i] * own[j] / fewer + both.value * both.value / of_device);
+      hat.devices[i].push_back(hat_point(point, -both.value, sd));
+    }
   }
   note_negative(hat);
   return hat;

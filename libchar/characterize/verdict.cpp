@@ -8,14 +8,16 @@
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/fit/curve/power_laws.hpp"
 
 namespace libchar {
 namespace {
 
 std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   const Coefficient& c = fit[term];
-  const TermCells cells = term_cells(c, term, unit);
-  const std::string name = cells.title + " " + cells.letter;
+  const bool clock = fit.flicker_phase.has_value();
+  const TermCells cells = term_cells(c, term, unit, clock);
+  const std::string name = clock ? cells.title : cells.title + " " + cells.letter;
   const std::string value =
       said(cells.own) + (cells.field.empty() ? "" : " (" + said(cells.field.front()) + ")");
   switch (c.status) {
@@ -184,10 +186,8 @@ std::string verdict_of(const Characterization& result) {
 
 namespace {
 
-std::string term_phrase(const TermCells& cells) {
-  const ShownValue& shown = headline(cells);
-  const std::string name = cells.title + " " + cells.letter;
-  const char* doubt = cells.status == Status::undetermined ? ", undetermined" : "";
+std::string term_phrase(const std::string& name, const ShownValue& shown, Status status) {
+  const char* doubt = status == Status::undetermined ? ", undetermined" : "";
   return shown.low.empty()
              ? fmt::format("{} not seen ({}{})", name, said(shown), doubt)
              : fmt::format("{} {} {}{}", name, said(shown), interval_brackets(shown), doubt);
@@ -195,10 +195,17 @@ std::string term_phrase(const TermCells& cells) {
 
 std::string terms_of(const NoiseFit& fit, const std::string& unit) {
   std::vector<std::string> parts;
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    if (!fit.term[t].value && !fit.term[t].upper95) continue;
-    const std::string phrase = term_phrase(term_cells(fit.term[t], static_cast<Term>(t), unit));
+  const auto say = [&](const std::string& name, const ShownValue& shown, const Coefficient& c) {
+    if (!c.value && !c.upper95) return;
+    const std::string phrase = term_phrase(name, shown, c.status);
     parts.push_back(parts.empty() ? phrase : as_part(phrase));
+  };
+  const std::vector<PowerLaw> laws = power_laws(fit);
+  for (const PowerLaw& law : laws)
+    say(fmt::format("{} h_{}", law.name, law.alpha), shown_value(law.h, 1, ""), law.h);
+  for (std::size_t t = laws.empty() ? 0 : static_cast<std::size_t>(Term::ramp); t < kTerms; ++t) {
+    const TermCells cells = term_cells(fit.term[t], static_cast<Term>(t), unit, !laws.empty());
+    say(cells.title + " " + cells.letter, headline(cells), fit.term[t]);
   }
   // Without it, "not seen" of flicker and walk would read as no slow noise at all.
   if (fit.gauss_markov && fit.gauss_markov->in_model && fit.gauss_markov->sigma.value) {
@@ -235,17 +242,19 @@ std::string spoils_phrase(const Judgement& judgement) {
   return out + ".";
 }
 
+/// Of a sentence.
+std::string begun(std::string text) {
+  if (text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 }  // namespace
 
 std::string detail::summary_sentence(const ChannelResult& channel,
                                      const Judgement& judgement,
                                      const std::string& unit) {
-  if (!channel.fit) {
-    std::string out = spoils_phrase(judgement);
-    if (out[0] >= 'a' && out[0] <= 'z') out[0] = static_cast<char>(out[0] - 'a' + 'A');
-    return out;
-  }
-  const std::string terms = terms_of(*channel.fit, unit) + "." + beside_phrase(*channel.fit);
+  if (!channel.fit) return begun(spoils_phrase(judgement));
+  const std::string terms = begun(terms_of(*channel.fit, unit)) + "." + beside_phrase(*channel.fit);
   if (judgement.rating == Rating::good) return terms;
   return terms + (judgement.rating == Rating::bad ? " Do not rely on them: " : " But: ") +
          spoils_phrase(judgement);

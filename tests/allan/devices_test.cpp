@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 #include <random>
 
 #include "libchar/allan/allan_deviation.hpp"
@@ -153,6 +154,45 @@ TEST_CASE(
     const HatPoint& p = noisy.devices[c][0];
     const double truth = double((c + 1) * (c + 1)) / 4;
     CHECK(std::fabs(p.variance - truth) < 0.35);
+  }
+}
+
+TEST_CASE("cornered hat of differences: the noise of the measurements is in what it states") {
+  // Phases of two clocks of white frequency against one without noise, each difference with a counter's white phase.
+  constexpr int kRuns = 150;
+  constexpr std::size_t kReadings = 1000;
+  const std::vector<double> taus = {1, 8, 32};
+  for (const double counter : {0.0, 3.0, 30.0}) {
+    std::map<double, std::array<double, 4>> of;  // sum, squares, stated variance, resolved
+    std::mt19937 random(21);
+    std::normal_distribution<double> normal;
+    for (int run = 0; run < kRuns; ++run) {
+      Records x(3, std::vector<double>(kReadings)), d = x;
+      for (std::size_t i = 1; i < kReadings; ++i)
+        for (std::size_t c = 1; c < 3; ++c) x[c][i] = x[c][i - 1] + normal(random);
+      for (std::size_t i = 0; i < kReadings; ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+          d[c][i] = x[c][i] - x[(c + 1) % 3][i] + counter * normal(random);
+      AllanOptions options = at_times(taus);
+      options.data = DataKind::phase;
+      const CorneredHat hat = cornered_hat_of_differences(d, 1, options);
+      for (const HatPoint& p : hat.devices[0]) {
+        auto& [sum, squares, stated, resolved] = of[p.tau_s];
+        sum += p.variance / kRuns;
+        squares += p.variance * p.variance / kRuns;
+        stated += p.variance_sd * p.variance_sd / kRuns;
+        resolved += p.status == HatStatus::resolved ? 1.0 / kRuns : 0;
+      }
+    }
+    for (const auto& [tau_s, found] : of) {
+      const auto& [sum, squares, stated, resolved] = found;
+      CAPTURE(counter, tau_s, sum, resolved);
+      // More where the noise changes from the counters' to the devices', which have fewer degrees of freedom.
+      const double over_real = std::sqrt(stated / (squares - sum * sum));
+      CHECK(over_real > 0.75);
+      CHECK(over_real < 1.6);
+      CHECK(resolved < 0.07);
+    }
   }
 }
 

@@ -255,7 +255,8 @@ TEST_CASE("family: MTIE and TIE rms of a straight line, a step and an alternatio
   }
   const AllanCurve rms = family_curve(step, DeviationType::tierms);
   for (const AllanPoint& p : rms.points)
-    CHECK(p.deviation == Approx(2 * std::sqrt(double(p.m) / double(101 - p.m))));
+    CHECK(p.deviation == Approx(2 * std::sqrt(double(std::min<std::uint64_t>(p.m, 101 - p.m)) /
+                                              double(101 - p.m))));
 }
 
 TEST_CASE("family: MTIE and TIE rms have no interval, the others one that holds the value") {
@@ -376,6 +377,71 @@ TEST_CASE("family: simulated noises have the expected values and degrees of free
             Approx(cases[c].ratio[kind]).epsilon(cases[c].bound));
       CHECK(stated[c] == Approx(value[c].dof()).epsilon(0.2));
     }
+  }
+}
+
+// Its bias is taken from ratios at averaging times up to half of the record: about twenty degrees of freedom at every
+// averaging time, however long the record is.
+TEST_CASE("family: intervals of the bias-removed Theo1 cover at every averaging time") {
+  constexpr int kRecords = 250;
+  for (const std::size_t samples : {200U, 800U})
+    for (int kind = 0; kind < 3; ++kind) {
+      std::mt19937 random(300 + static_cast<unsigned>(kind));
+      std::map<double, int> covered;
+      const auto n = static_cast<double>(samples);
+      AllanOptions options;
+      options.type = DeviationType::theobr;
+      options.grid = TauGrid::list;
+      options.taus_s = {18, 0.1 * n, 0.22 * n, 0.4 * n, 0.6 * n, 0.74 * n};
+      for (int r = 0; r < kRecords; ++r) {
+        AllanCurve curve = allan_deviation(power_law(kind, samples, random), 1, options);
+        add_intervals(curve, only_noise(kind));
+        for (const AllanPoint& p : curve.points) {
+          const double truth = std::sqrt(allan_variance(only_noise(kind), p.tau_s, 1));
+          covered[p.tau_s] += p.ci95.low <= truth && truth <= p.ci95.high ? 1 : 0;
+        }
+      }
+      CHECK(covered.size() == 6);
+      for (const auto& [tau_s, count] : covered) {
+        CAPTURE(samples, kind, tau_s, count);
+        CHECK(count >= 0.88 * kRecords);
+      }
+    }
+}
+
+TEST_CASE("family: the bias of the total deviations stays on request, and it is said") {
+  const auto y = normal_rates(500, 12);
+  for (const DeviationType type :
+       {DeviationType::mtotdev, DeviationType::ttotdev, DeviationType::htotdev}) {
+    AllanOptions options;
+    options.type = type;
+    const AllanCurve raw = allan_deviation(y, 1, options);
+    AllanCurve without = raw;
+    add_intervals(without, {1});
+    options.bias = AllanCurve::Bias::none;
+    AllanCurve with = allan_deviation(y, 1, options);
+    add_intervals(with, {1});
+    for (std::size_t k = 0; k < raw.points.size(); ++k) {
+      CAPTURE(name_of(type), raw.points[k].m);
+      CHECK(with.points[k].deviation == raw.points[k].deviation);
+      CHECK(with.points[k].bias == 1);
+      CHECK(with.points[k].edf == without.points[k].edf);
+      CHECK(without.points[k].deviation ==
+            Approx(raw.points[k].deviation / std::sqrt(without.points[k].bias)).epsilon(1e-14));
+    }
+    CHECK(without.points[3].bias < 1);
+    REQUIRE(with.notes.size() == 1);
+    CHECK(with.notes[0].find("keep their expected bias") != std::string::npos);
+  }
+}
+
+TEST_CASE("family: MTIE and TIE rms reach the length of the record") {
+  const std::vector<double> line(128, 3.0);
+  for (const DeviationType type : {DeviationType::mtie, DeviationType::tierms}) {
+    const AllanCurve curve = family_curve(line, type, TauGrid::octave);
+    CHECK(curve.points.back().m == 128);
+    CHECK(curve.points.back().terms == 1);
+    CHECK(curve.points.back().deviation == Approx(3 * 64));
   }
 }
 

@@ -97,15 +97,31 @@ TEST_CASE(
   CHECK(unlike <= 3);    // 1 % of 40; more than three by chance: 0.1 %
 }
 
-TEST_CASE("pooled runs: a run of another sensor is named, and the common numbers say so") {
+TEST_CASE(
+    "pooled runs: a run of another sensor is named, and the coefficients are those of the rest") {
   auto runs = runs_of({}, 7, 6000, 3);
   test::NoiseSource noise(6000, kRate, 77);
   runs.push_back(run_of(noise.record(6.5e-3, 4e-3, 0), "odd"));
   const PooledChannel pooled = only(pool_runs(runs));
   CHECK_FALSE(pooled.consistent);
   for (const ChannelRun& run : pooled.runs) CHECK(run.differs == (run.run == 7));
-  CHECK(pooled.fit[Term::white].status == Status::misfit);
   CHECK_THAT(pooled.sentences.at(0), Contains("odd"));
+  CHECK(pooled.rest_alike);
+  const PooledChannel rest = only(pool_runs(runs_of({}, 7, 6000, 3)));
+  CHECK(pooled.fit[Term::white].status == Status::detected);
+  CHECK(pooled.fit[Term::white].value == rest.fit[Term::white].value);
+  CHECK(pooled.fit[Term::white].ci95.high == rest.fit[Term::white].ci95.high);
+}
+
+TEST_CASE("pooled runs: where more than single runs differ, the common numbers say so") {
+  auto runs = runs_of({}, 2, 6000, 3);
+  test::NoiseSource noise(6000, kRate, 77), other(6000, kRate, 78);
+  runs.push_back(run_of(noise.record(6.5e-3, 4e-3, 0), "one"));
+  runs.push_back(run_of(other.record(6.5e-3, 4e-3, 0), "two"));
+  const PooledChannel pooled = only(pool_runs(runs));
+  CHECK_FALSE(pooled.consistent);
+  CHECK_FALSE(pooled.rest_alike);
+  CHECK(pooled.fit[Term::white].status == Status::misfit);
 }
 
 TEST_CASE("pooled runs: the turn-on bias has a spread beyond the noise, or a limit") {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
@@ -106,6 +107,64 @@ TEST_CASE("scaling a curve scales the coefficients") {
   }
 }
 
+TEST_CASE("a curve of any scale that a double holds has the digits of scale one") {
+  for (const bool is_allan : {true, false})
+    for (const bool root : {true, false}) {
+      DigitisedCurve curve = allan_of({25e-6, 1e-6, 1e-8, 0, 0}, std::nullopt);
+      curve.is_allan = is_allan;
+      curve.root = root;
+      const NoiseFit one = fit_curve(curve);
+      for (const int octave : {-332, -300, 300, 332}) {
+        const double scale = std::exp2(octave);
+        DigitisedCurve other = curve;
+        for (double& y : other.y) y *= root ? scale : scale * scale;
+        const NoiseFit fit = fit_curve(other);
+        CAPTURE(is_allan, root, octave);
+        CHECK(fit.converged);
+        for (std::size_t i = 0; i < kTerms; ++i) {
+          REQUIRE(one.term[i].status == fit.term[i].status);
+          if (one.term[i].value) CHECK(*fit.term[i].value == scale * *one.term[i].value);
+          if (one.term[i].upper95) CHECK(*fit.term[i].upper95 == scale * *one.term[i].upper95);
+          CHECK(fit.term[i].ci95.high == scale * one.term[i].ci95.high);
+        }
+      }
+    }
+}
+
+TEST_CASE(
+    "without the length of the record, intervals hold the coefficients by the points' own "
+    "scatter") {
+  constexpr int kRounds = 24;
+  const Mixture theta = {1e-2, 4e-4, 4e-6, 0, 0};
+  int covered[3] = {}, stated[3] = {};
+  for (unsigned seed = 0; seed < kRounds; ++seed) {
+    test::NoiseSource source(30'000, 1, 900 + seed);
+    const auto y = source.record(0.1, 0.02, 2e-3);
+    AllanOptions options;
+    options.grid = TauGrid::list;
+    for (double tau = 1; tau < 9'000; tau *= 1.4) options.taus_s.push_back(std::round(tau));
+    DigitisedCurve curve;
+    for (const AllanPoint& point : allan_deviation(y, 1, options).points) {
+      curve.x.push_back(point.tau_s);
+      curve.y.push_back(point.deviation);
+    }
+    const NoiseFit fit = fit_curve(curve);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Coefficient& term = fit.term[i];
+      const double truth = std::sqrt(theta[i]);
+      ++stated[i];
+      covered[i] += term.value ? term.ci95.low <= truth && truth <= term.ci95.high
+                               : term.upper95.value_or(0) >= truth;
+    }
+    REQUIRE(fit.findings.size() == 1);
+    CHECK(fit.findings[0].sentence.find("`duration_s`") != std::string::npos);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    CAPTURE(i, covered[i], stated[i]);
+    CHECK(covered[i] >= 0.8 * stated[i]);
+  }
+}
+
 TEST_CASE("with the length of the record, a curve in another unit has the same intervals") {
   DigitisedCurve curve = allan_of({25e-6, 1e-6, 1e-8, 0, 1e-12}, 100.0);
   curve.duration_s = 1e5;
@@ -174,7 +233,9 @@ TEST_CASE("residuals that go together are fewer points, and widen the intervals"
     REQUIRE(fit[Term::white].value);
     return fit[Term::white].relative_sd;
   };
-  CHECK(relative_sd(8) > 1.4 * relative_sd(2));
+  // Neighbours of a correlation of a half: a third of the points.
+  CHECK(relative_sd(8) > 0.95 * 0.01 / std::sqrt(48.0 / 3));
+  CHECK(relative_sd(2) > 0.01 / std::sqrt(48.0));
 }
 
 TEST_CASE("a term that is there but barely known has an interval off zero on either side of it") {

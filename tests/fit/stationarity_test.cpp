@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "tests/support/noise.hpp"
 
@@ -122,4 +124,31 @@ TEST_CASE("stationarity: short, holed and constant records are not judged") {
   FitOptions as_it_is;
   as_it_is.stationarity = false;
   CHECK_FALSE(fit_record(clean(1), kSteadyRate, nullptr, as_it_is).stationarity.tested);
+}
+
+TEST_CASE("stationarity: the intervals of a curve hold what stretches differ by") {
+  // White noise whose strength changes every twentieth of the record.
+  int covered = 0, wider = 0;
+  constexpr int kRecords = 30;
+  constexpr double kSpread = 0.3;  // of ln
+  for (unsigned seed = 0; seed < kRecords; ++seed) {
+    test::Gaussian normal(seed + 50);
+    Record y(kSteadySamples);
+    double level = 1;
+    for (std::size_t t = 0; t < y.size(); ++t) {
+      if (t % (kSteadySamples / 20) == 0) level = std::exp(kSpread * normal());
+      y[t] = level * normal();
+    }
+    const NoiseFit fit = fit_record(y, kSteadyRate, nullptr);
+    AllanCurve curve = pyramid_deviation(y, 1 / kSteadyRate);
+    add_fit_intervals(curve, fit);
+    const AllanPoint& point = curve.points.at(2);
+    const double truth = std::exp(kSpread * kSpread) / std::sqrt(4.0);
+    covered += point.ci95.low <= truth && truth <= point.ci95.high ? 1 : 0;
+    wider += point.edf < 1000 ? 1 : 0;
+    CHECK(curve.notes.size() == (fit.stationarity.steady ? 0 : 1));
+  }
+  CAPTURE(covered, wider);
+  CHECK(covered >= 24);
+  CHECK(wider >= 28);
 }

@@ -184,7 +184,7 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
   options.only(
       "without --hat, --hat-pairs and --dynamic",
       [verb = verb.get()] { return !verb->hat && !verb->hat_of_differences && !verb->dynamic; },
-      {"--still", "--unwrap", "--frozen", "--interpolated", "--memory"});
+      {"--still", "--unwrap", "--frozen", "--interpolated", "--memory", "--bias"});
   return [&session, verb] {
     verb->analysis.options.reading.hash = verb->json;  // only the document states it
     run_allan(session, *verb);

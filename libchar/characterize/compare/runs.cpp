@@ -2,7 +2,7 @@
 // band held. Its distribution is not chi-square (coefficients at zero, bins of one degree of freedom), so it is simulated: runs of
 // the same bins from the common coefficients, energies as the likelihood has them, until ten are as large (Besag & Clifford,
 // Biometrika 78 (1991) 301). Then the run of the largest ratio is named where that is beyond the largest of any by chance, left out,
-// and the rest tested again.
+// and the rest tested again. Where the rest is alike, the coefficients are its own.
 // Turn-on bias: means of runs scatter by the noise (the Allan deviation of the run's length) and by the spread that is sought
 // (core/random_effects.hpp). What the bias does between runs that were not switched off is in the spread as well.
 #include "libchar/characterize/compare/runs.hpp"
@@ -146,8 +146,9 @@ RunsTest tested(const RunBins& runs,
   return out;
 }
 
-/// Names runs one by one: an unlike one bends the common coefficients, and all others would look unlike beside it.
-void name_unlike(const PooledFit& pooled,
+/// Names runs one by one: an unlike one bends the common coefficients, and all others would look
+/// unlike beside it. Whether the rest is alike, and most of them.
+bool name_unlike(const PooledFit& pooled,
                  const PoolOptions& options,
                  RunsTest test,
                  DeviateStream& random,
@@ -164,10 +165,11 @@ void name_unlike(const PooledFit& pooled,
     place.erase(place.begin() + static_cast<std::ptrdiff_t>(worst));
     test = tested(rest, pooled.terms, options, random);
   }
+  return !(test.p < options.probability) && 2 * rest.size() > pooled.runs.size();
 }
 
-/// Fills the ratios, their p, and who differs.
-void test_consistency(const PooledFit& pooled, const PoolOptions& options, PooledChannel& out) {
+/// Fills the ratios, their p, and who differs. Whether those that do not are alike.
+bool test_consistency(const PooledFit& pooled, const PoolOptions& options, PooledChannel& out) {
   DeviateStream random({options.seed, 0, Purpose::bootstrap});
   const RunsTest all = tested(pooled.runs, pooled.terms, options, random);
   out.ratio = all.ratios.total;
@@ -178,7 +180,7 @@ void test_consistency(const PooledFit& pooled, const PoolOptions& options, Poole
     out.runs[r].ratio = all.ratios.run[r];
     out.runs[r].p = all.run_p[r];
   }
-  if (!out.consistent) name_unlike(pooled, options, all, random, out);
+  return out.consistent || name_unlike(pooled, options, all, random, out);
 }
 
 /// Coefficients of runs that do not share them: a mean of unlike things, known no better than they scatter.
@@ -243,11 +245,11 @@ std::string consistency_sentence(const PooledChannel& c, std::span<const Charact
                        c.runs.size() == 2 ? "both runs" : fmt::format("all {} runs", c.runs.size()),
                        figures);
   const std::string named = files_of(c, runs);
-  return fmt::format(
-      "The runs do not have one set of coefficients ({}); {}. The common ones are a mean of unlike "
-      "runs.",
-      figures,
-      named.empty() ? "none stands out alone" : "not like the rest: " + named);
+  return fmt::format("The runs do not have one set of coefficients ({}); {}.",
+                     figures,
+                     named.empty() ? "none stands out alone" : "not like the rest: " + named) +
+         (c.rest_alike ? " The coefficients are those of the rest."
+                       : " The common ones are a mean of unlike runs.");
 }
 
 std::string bias_sentence(const PooledChannel& c) {
@@ -292,8 +294,14 @@ PooledChannel pooled_channel(std::span<const Characterization> runs,
   const PooledFit pooled = fit_pooled(records, samples / seconds, fit);
   out.fit = pooled.fit;
   if (records.size() >= 2) {
-    test_consistency(pooled, options, out);
-    if (!out.consistent) admit_unlike(pooled, out);
+    out.rest_alike = test_consistency(pooled, options, out);
+    if (!out.rest_alike) admit_unlike(pooled, out);
+    if (out.rest_alike && !out.consistent) {
+      std::vector<RunRecord> rest;
+      for (std::size_t r = 0; r < records.size(); ++r)
+        if (!out.runs[r].differs) rest.push_back(records[r]);
+      out.fit = fit_pooled(rest, samples / seconds, fit).fit;
+    }
     out.sentences.push_back(consistency_sentence(out, runs));
   }
   if (options.data == SampleKind::rate) find_bias(runs, out);

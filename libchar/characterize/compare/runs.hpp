@@ -36,12 +36,13 @@ struct ChannelRun {
 
 struct PooledChannel {
   Channel channel;
-  NoiseFit fit;                  ///< of all runs together
+  NoiseFit fit;  ///< of all runs together, without those that differ where the others are alike
   std::vector<ChannelRun> runs;  ///< those that were fitted
   double ratio = 0;              ///< sum of the ratios of the runs
   double p = 1;                  ///< of as large a sum, by chance
   int simulations = 0;           ///< that the probabilities are counted in
   bool consistent = true;
+  bool rest_alike = true;  ///< all runs but those that differ have one set of coefficients
   std::optional<RandomEffects>
       bias;  ///< turn-on bias: mean and spread; none: fewer than two runs, or of a phase
   std::vector<std::string> sentences;  ///< the finding first

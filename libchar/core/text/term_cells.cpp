@@ -32,11 +32,16 @@ std::string known_to(const Coefficient& c) {
   return c.value && c.relative_sd > 0 ? plus_minus(c.relative_sd) : "";
 }
 
-TermCells term_cells(const Coefficient& c, Term term, const std::string& unit) {
+TermCells term_cells(const Coefficient& c, Term term, const std::string& unit, bool clock) {
+  constexpr const char* kOfClock[] = {"White frequency",
+                                      "Flicker frequency",
+                                      "Random-walk frequency",
+                                      "White phase",
+                                      "Frequency drift"};
   const TermName& name = kTermNames[static_cast<std::size_t>(term)];
   TermCells out;
   out.term = term;
-  out.title = term_title(term, unit);
+  out.title = clock ? kOfClock[static_cast<std::size_t>(term)] : term_title(term, unit);
   out.letter = name.letter;
   out.own = shown_value(c, 1, shown_term_unit(name.key, unit));
   out.status = c.status;

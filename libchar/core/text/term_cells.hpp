@@ -24,7 +24,7 @@ struct ShownValue {
 
 struct TermCells {
   Term term = Term::white;
-  std::string title, letter;      ///< "Angle random walk", "N"
+  std::string title, letter;      ///< "Angle random walk", "N"; of a clock "White frequency", "N"
   ShownValue own;                 ///< in the channel's unit
   std::vector<ShownValue> field;  ///< in the field's units; empty where there is nothing to say
   Status status = Status::not_fitted;
@@ -33,8 +33,11 @@ struct TermCells {
   std::string known_to, best_possible, length_for_10_percent;
 };
 
-/// `unit`: of the channel, as it is to be shown.
-TermCells term_cells(const Coefficient& coefficient, Term term, const std::string& unit);
+/// `unit`: of the channel, as it is to be shown. A clock's terms have a clock's words.
+TermCells term_cells(const Coefficient& coefficient,
+                     Term term,
+                     const std::string& unit,
+                     bool clock = false);
 
 /// Its standard deviation, "±0.37 %"; "" where it has none.
 std::string known_to(const Coefficient& coefficient);

@@ -4,9 +4,9 @@
 //   duration of the record  the exact covariance of its overlapping Allan variances (of the fitted
 //                           mixture, refined three times), with the mean and the variance that the
 //                           logarithm of a chi-square of as many degrees of freedom has;
-//   neither                 equal relative errors, estimated from the scatter about the fit;
-//                           neighbouring residuals that go the same way count as fewer points,
-//                           n (1-r)/(1+r).
+//   neither                 the scatter about the fit says it, likely length of a record or course over
+//                           frequency (detail/curve/curve_scatter.hpp); neighbouring residuals that go the
+//                           same way count as fewer points, n (1-r)/(1+r).
 // Of a curve of more than 512 points neighbours are put together first, in at most that many groups that are even in the logarithm of
 // the abscissa: means of ln x and ln y by their weights, with the weight of all of them.
 // Where stated uncertainties (or a record's length) are contradicted by the scatter about the fit, the fast end of the curve is left
@@ -22,8 +22,6 @@
 #include <limits>
 #include <numeric>
 
-#include "libchar/allan/allan_covariance.hpp"
-#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
@@ -34,6 +32,7 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/curve_likelihood.hpp"
+#include "libchar/fit/detail/curve/curve_scatter.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
@@ -113,45 +112,6 @@ TermSet offered_to(const DigitisedCurve& curve, const FitOptions& options) {
   terms[static_cast<std::size_t>(Term::quantization)] = curve.is_allan || curve.rate_hz.has_value();
   terms[static_cast<std::size_t>(Term::ramp)] = curve.is_allan;
   return terms;
-}
-
-/// What a record of the curve's duration makes of ln(variance): bias, and inverse Cholesky factor of the covariance. A variance with few
-/// degrees of freedom, as at the slow end, is that of a chi-square, whose logarithm is skew.
-void weigh_by_duration(const DigitisedCurve& curve, const Mixture& theta, CurveProblem& problem) {
-  const double rate_hz = curve.rate_hz.value_or(1 / curve.x.front());
-  AllanCurve record;
-  record.dt_s = 1 / rate_hz;
-  record.samples = static_cast<std::uint64_t>(std::llround(*curve.duration_s * rate_hz));
-  for (const double tau_s : curve.x) {
-    AllanPoint point;
-    point.m = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(tau_s * rate_hz)));
-    point.m = std::min(point.m, record.samples / 2);
-    point.tau_s = static_cast<double>(point.m) / rate_hz;
-    point.terms = record.samples - 2 * point.m + 1;
-    record.points.push_back(point);
-  }
-  Mixture noise = theta;
-  noise[static_cast<std::size_t>(Term::ramp)] = 0;  // not random
-  Eigen::MatrixXd covariance = allan_covariance(record, noise);
-  const auto n = covariance.rows();
-  Eigen::VectorXd level(n);
-  for (Eigen::Index j = 0; j < n; ++j)
-    level[j] = allan_variance(
-        noise, static_cast<double>(record.points[static_cast<std::size_t>(j)].m), record.dt_s);
-  covariance = level.cwiseInverse().asDiagonal() * covariance * level.cwiseInverse().asDiagonal();
-  problem.bias.resize(n);
-  Eigen::VectorXd wider(n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double dof = 2 / covariance(j, j);
-    const LogMoments moments = chi_square_log_moments(dof);
-    problem.bias[j] = moments.mean;
-    wider[j] = std::sqrt(moments.variance / covariance(j, j));
-  }
-  covariance = wider.asDiagonal() * covariance * wider.asDiagonal();
-  // Points read off a graph are a percent off; neighbours a fraction of an octave apart would be
-  // singular without that.
-  covariance.diagonal().array() += 1e-4 + 0.01 * covariance.diagonal().array();
-  problem.whitening = inverse_cholesky_factor(covariance);
 }
 
 enum class Scatter { stated, from_duration, estimated };
@@ -239,7 +199,7 @@ double upper_limit(const CurveProblem& problem,
   return std::sqrt(high);
 }
 
-void say_what_intervals_mean(const Judge& judge, double scatter, NoiseFit& fit) {
+void say_what_intervals_mean(const Judge& judge, const std::string& basis, NoiseFit& fit) {
   switch (judge.scatter) {
     case Scatter::stated:
       fit.findings.push_back(finding(
@@ -253,13 +213,11 @@ void say_what_intervals_mean(const Judge& judge, double scatter, NoiseFit& fit) 
           "Allan variances."));
       return;
     case Scatter::estimated:
-      fit.findings.push_back(finding(
-          "curve_uncertainty",
-          fmt::format("The curve states no uncertainty: it was taken as equal relative error at "
-                      "every point, {} of the ordinate from the scatter about the fit. "
-                      "The intervals say how well the drawn curve fixes the coefficients, not how "
-                      "well the record behind it did.",
-                      percent_text(scatter))));
+      fit.findings.push_back(finding("curve_uncertainty",
+                                     "The curve states no uncertainty: the intervals rest on the "
+                                     "scatter of its points about the "
+                                     "fit, " +
+                                         basis + "."));
       return;
   }
 }
@@ -365,13 +323,13 @@ void report_terms(const CurveJudgement& found,
   }
 }
 
-void report_goodness(const CurveJudgement& found, NoiseFit& fit) {
+void report_goodness(const CurveJudgement& found, const std::string& basis, NoiseFit& fit) {
   const bool estimated = found.judge.scatter == Scatter::estimated;
   const double sum = found.decision.best.sum_of_squares;
   fit.goodness.chi2 = estimated ? found.free_points : sum;
   fit.goodness.dof = found.free_points;
   fit.goodness.p = estimated ? 1 : chi_square_tail(sum, found.free_points);
-  say_what_intervals_mean(found.judge, std::sqrt(found.mean_square) / 2, fit);
+  say_what_intervals_mean(found.judge, basis, fit);
   if (!estimated && fit.goodness.p < 1e-3) {
     fit.findings.push_back(finding(
         "curve_scatter",
@@ -423,21 +381,18 @@ NoiseFit fit_points(const DigitisedCurve& curve,
   Judge judge;
   judge.points = judge.independent = static_cast<double>(curve.x.size());
   judge.scale = scale;
-  CurveSolution rough = solve_curve_thoroughly(problem, offered);
+  CurveSolution rough;
+  std::string basis;  // of a scatter that is estimated
   if (!curve.relative_sd.empty()) {
     judge.scatter = Scatter::stated;
     problem.weight = (2 * array_of(curve.relative_sd)).inverse();
   } else if (curve.duration_s && curve.is_allan) {
     judge.scatter = Scatter::from_duration;
-    for (int round = 0; round < 3; ++round) {
-      weigh_by_duration(curve, rough.theta, problem);
-      rough = solve_curve_thoroughly(problem, offered);
-    }
+    rough = weigh_by_duration(curve, *curve.duration_s, kReading, offered, problem);
   } else {
-    if (!curve.group.empty()) {
-      problem.weight = array_of(curve.group).sqrt();
-      rough = solve_curve_thoroughly(problem, offered);
-    }
+    basis = curve.is_allan ? weigh_by_likely_record(curve, offered, problem)
+                           : weigh_by_frequency(curve, offered, problem);
+    rough = solve_curve_thoroughly(problem, offered);
     judge.independent = effective_points(curve_residuals(problem, rough.theta), count_of(offered));
     judge.floor = judge.points * kDigitised * kDigitised;
   }
@@ -455,7 +410,7 @@ NoiseFit fit_points(const DigitisedCurve& curve,
       curve.rate_hz ? "exact discrete curves" : "continuous asymptotes (the rate is not known)");
   const CurveJudgement found = judged(problem, decision, judge);
   report_terms(found, offered, options.threshold, fit);
-  report_goodness(found, fit);
+  report_goodness(found, basis, fit);
   report_residuals(curve, found, fit);
   return fit;
 }
@@ -537,22 +492,27 @@ std::size_t points_in_octave(const DigitisedCurve& curve, std::size_t left_out) 
   return count;
 }
 
-/// Neighbours together, the slow end (few of the points, much of the information) as it is.
+/// Neighbours together, the slow end (few of the points, much of the information) as it is. Of a
+/// spectrum that states no uncertainty powers are averaged: the mean of their logarithms is low.
 DigitisedCurve grouped(const DigitisedCurve& curve) {
   DigitisedCurve out = curve;
   for (auto* values : {&out.x, &out.y, &out.relative_sd}) values->clear();
   const double width =
       std::log(curve.x.back() / curve.x.front()) / static_cast<double>(kMostPoints - 1);
+  const bool of_powers = !curve.is_allan && curve.relative_sd.empty();
+  const double power = curve.root ? 2 : 1;
   for (std::size_t from = 0, to = 0; from < curve.x.size(); from = to) {
     double weight = 0, x = 0, y = 0;
     for (; to < curve.x.size() && std::log(curve.x[to] / curve.x[from]) < width; ++to) {
       const double sd = curve.relative_sd.empty() ? 1 : curve.relative_sd[to], w = 1 / (sd * sd);
       weight += w;
       x += w * std::log(curve.x[to] / curve.x[from]);
-      y += w * std::log(curve.y[to] / curve.y[from]);
+      const double ratio = curve.y[to] / curve.y[from];
+      y += w * (of_powers ? std::pow(ratio, power) : std::log(ratio));
     }
     out.x.push_back(curve.x[from] * std::exp(x / weight));
-    out.y.push_back(curve.y[from] * std::exp(y / weight));
+    out.y.push_back(curve.y[from] *
+                    (of_powers ? std::pow(y / weight, 1 / power) : std::exp(y / weight)));
     if (!curve.relative_sd.empty()) out.relative_sd.push_back(1 / std::sqrt(weight));
     out.group.push_back(static_cast<double>(to - from));
   }
@@ -564,12 +524,28 @@ std::size_t fewest_points(std::size_t points, const TermSet& offered) {
   return std::max((points + 1) / 2, count_of(offered) + 3);
 }
 
-}  // namespace
+/// The same curve in another unit, `scale` of them one of the channel's: a power of two, which leaves the digits.
+DigitisedCurve in_unit(DigitisedCurve curve, double scale) {
+  for (double& y : curve.y) y *= curve.root ? scale : scale * scale;
+  return curve;
+}
 
-NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
-  check(curve);
+/// Back from it.
+void take_unit_back(double scale, bool is_allan, NoiseFit& fit) {
+  for (Coefficient& term : fit.term) {
+    if (term.value) *term.value /= scale;
+    if (term.upper95) *term.upper95 /= scale;
+    term.ci95 = {term.ci95.low / scale, term.ci95.high / scale};
+  }
+  for (double& theta : fit.theta) theta = theta / scale / scale;
+  for (FitResidual& residual : fit.residuals)
+    for (double* value : {&residual.measured, &residual.model})
+      *value = is_allan ? *value / scale : *value / scale / scale;
+}
+
+NoiseFit fit_in_range(const DigitisedCurve& curve, const FitOptions& options) {
   if (curve.x.size() > kMostPoints && curve.group.empty())
-    return fit_curve(grouped(curve), options);
+    return fit_in_range(grouped(curve), options);
   const TermSet offered = offered_to(curve, options);
   NoiseFit whole = fit_points(curve, offered, options, 1);
   // A scatter that is estimated from the points themselves contradicts nothing. Without the rate, the record's length alone does not
@@ -607,6 +583,17 @@ NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
       "no coefficient is borne out.",
       "the noise terms do not describe the curve"));
   return misfit;
+}
+
+}  // namespace
+
+NoiseFit fit_curve(const DigitisedCurve& curve, const FitOptions& options) {
+  check(curve);
+  const int octave = curve.y.empty() ? 0 : std::ilogb(curve.y.front());
+  const double scale = std::exp2(curve.root ? -octave : -octave / 2);
+  NoiseFit fit = fit_in_range(in_unit(curve, scale), options);
+  take_unit_back(scale, curve.is_allan, fit);
+  return fit;
 }
 
 }  // namespace libchar

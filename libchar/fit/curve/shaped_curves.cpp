@@ -104,7 +104,20 @@ double mean_noise_variance(const NoiseFit& fit) {
   return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s);
 }
 
-void add_fit_intervals(AllanCurve& curve, const NoiseFit& fit) {
+namespace {
+
+/// What stretches of the record differ by, the mean of all differs by from the long run's.
+void widen_by_stretches(AllanCurve& curve, const Stationarity& stationarity) {
+  if (stationarity.steady || deviation_row(curve.type).without_interval()) return;
+  for (AllanPoint& point : curve.points) {
+    const StretchSpread spread = detail::spread_at(stationarity, point.tau_s);
+    const double variance = 2 * spread.relative_sd * spread.relative_sd / spread.independent;
+    detail::set_dof(point, 1 / (1 / point.edf + variance));
+  }
+  curve.notes.emplace_back("the intervals hold what stretches of the record differ by");
+}
+
+void add_steady_intervals(AllanCurve& curve, const NoiseFit& fit) {
   if (!has_process(fit)) {
     Mixture theta = fit.theta;  // flicker phase has the degrees of freedom of white phase, nearly
     theta[static_cast<std::size_t>(Term::quantization)] += flicker_phase_theta(fit);
@@ -123,6 +136,13 @@ void add_fit_intervals(AllanCurve& curve, const NoiseFit& fit) {
     add_intervals(one, theta);
     point = one.points.front();
   }
+}
+
+}  // namespace
+
+void add_fit_intervals(AllanCurve& curve, const NoiseFit& fit) {
+  add_steady_intervals(curve, fit);
+  widen_by_stretches(curve, fit.stationarity);
 }
 
 double plain_from_s(const NoiseFit& fit, const AllanCurve& curve) {

@@ -83,6 +83,19 @@ struct Tested {
   std::uint64_t per_mean = 1;  ///< samples
 };
 
+/// n (1 - r)/(1 + r), r the correlation of neighbours.
+double independent_among(const std::vector<double>& level) {
+  const auto n = static_cast<double>(level.size());
+  const double mean = mean_present(level);
+  double power = 0, product = 0;
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    power += (level[i] - mean) * (level[i] - mean);
+    if (i > 0) product += (level[i] - mean) * (level[i - 1] - mean);
+  }
+  const double r = power > 0 ? std::clamp(product / power + 1 / n, 0.0, 0.9) : 0;
+  return std::max(1.0, n * (1 - r) / (1 + r));
+}
+
 std::optional<OctaveTest> test_pieces(const Tested& record, std::uint64_t m) {
   const std::vector<double> deviations = record.pieces(m);
   if (deviations.empty()) return std::nullopt;
@@ -114,6 +127,7 @@ std::optional<OctaveTest> test_pieces(const Tested& record, std::uint64_t m) {
   test.within = within;
   test.spread.p = fisher_tail(between / within, kBetween, kWithin);
   test.spread.relative_sd = 0.5 * std::sqrt(std::max(0.0, between - within) / kPiecesEach);
+  test.spread.independent = independent_among(test.log_variance);
   return test;
 }
 
@@ -142,6 +156,7 @@ std::optional<OctaveTest> test_stretches(const Curves& stretches,
   const double free = static_cast<double>(stretches.size() - 1);
   test.spread.p = chi_square_tail(t / (1 + (inverse - 1 / dof) / (3 * free)), free);
   test.spread.relative_sd = 0.5 * random_effects(test.log_variance, variances).spread;
+  test.spread.independent = independent_among(test.log_variance);
   return test;
 }
 
@@ -393,16 +408,21 @@ Stationarity test_stationarity(const FittedSums& sums,
   return test(tested, fit);
 }
 
-double spread_reach(const Stationarity& stationarity, double tau_s) {
-  if (stationarity.steady) return 0;
+StretchSpread detail::spread_at(const Stationarity& stationarity, double tau_s) {
+  if (stationarity.steady) return {};
   const auto away = [&](const StretchSpread& s) { return std::abs(std::log(s.tau_s / tau_s)); };
-  const auto nearest = std::min_element(
+  return *std::min_element(
       stationarity.spread.begin(),
       stationarity.spread.end(),
       [&](const StretchSpread& a, const StretchSpread& b) { return away(a) < away(b); });
-  const auto n = static_cast<double>(nearest->stretches);
+}
+
+double spread_reach(const Stationarity& stationarity, double tau_s) {
+  const StretchSpread nearest = detail::spread_at(stationarity, tau_s);
+  if (!(nearest.relative_sd > 0)) return 0;
+  const auto n = static_cast<double>(nearest.stretches);
   const double student = student_quantile(0.975, n - 1);
-  return student * std::sqrt(1 + 1 / n) * nearest->relative_sd;
+  return student * std::sqrt(1 + 1 / n) * nearest.relative_sd;
 }
 
 }  // namespace libchar

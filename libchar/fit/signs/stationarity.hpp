@@ -22,6 +22,7 @@ struct StretchSpread {
   double tau_s = 0;
   std::uint64_t stretches = 0;
   double relative_sd = 0;  ///< of the deviation of a stretch, beyond what chance makes of it
+  double independent = 1;  ///< stretches of as much to say: fewer where neighbours are alike
   double p = 1;            ///< of as much scatter in noise that is the same throughout
 };
 
@@ -48,6 +49,11 @@ Stationarity test_stationarity(const FittedSums& sums,
                                std::span<const Event> events,
                                double rate_hz,
                                const NoiseFit& fit);
+
+namespace detail {
+/// At the nearest octave; none where the record is steady.
+StretchSpread spread_at(const Stationarity& stationarity, double tau_s);
+}  // namespace detail
 
 /// ln(Allan deviation) of another stretch at this averaging time is within so much of the record's
 /// (95 %, by Student's t, beyond chance): by the spread at the nearest octave; 0 where the record

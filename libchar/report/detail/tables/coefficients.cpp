@@ -25,8 +25,8 @@ Cell field_cell(const std::vector<ShownValue>& field) {
   return out;
 }
 
-void add_term(Table& table, const Coefficient& c, Term term, const std::string& unit) {
-  const TermCells cells = term_cells(c, term, unit);
+void add_term(Table& table, const Coefficient& c, Term term, const std::string& unit, bool clock) {
+  const TermCells cells = term_cells(c, term, unit, clock);
   const std::string_view key = kTermNames[static_cast<std::size_t>(term)].key;
   Cell name(letter_and_title(cells));
   name.data = key;
@@ -56,7 +56,8 @@ void add_process(Table& table, const char* name, const Coefficient& c, const std
 
 Table coefficients_table(const Coefficients& terms,
                          const std::string& unit,
-                         const std::vector<Coefficient>& process) {
+                         const std::vector<Coefficient>& process,
+                         bool clock) {
   Table out("term|value|||status|known to|best possible|record for 10 %|in other words",
             "term|value,low95,high95|upper95|term_unit|status");
   out.column("known to").doors = Table::kPage;
@@ -65,7 +66,7 @@ Table coefficients_table(const Coefficients& terms,
   out.column("record for 10 %").about = "record length at which the bound is 10 %";
   for (std::size_t t = 0; t < kTerms; ++t)
     if (terms[t].status != Status::not_fitted || terms[t].value)
-      add_term(out, terms[t], static_cast<Term>(t), unit);
+      add_term(out, terms[t], static_cast<Term>(t), unit, clock);
   if (process.empty()) return out;
   add_process(out, "gauss_markov sigma", process[0], unit.empty() ? "U" : unit);
   add_process(out, "gauss_markov tau", process[1], "s");
@@ -73,8 +74,10 @@ Table coefficients_table(const Coefficients& terms,
 }
 
 Table coefficients_table(const NoiseFit& fit, const std::string& unit) {
-  if (!fit.gauss_markov || !fit.gauss_markov->in_model) return coefficients_table(fit.term, unit);
-  return coefficients_table(fit.term, unit, {fit.gauss_markov->sigma, fit.gauss_markov->tau_s});
+  std::vector<Coefficient> process;
+  if (fit.gauss_markov && fit.gauss_markov->in_model)
+    process = {fit.gauss_markov->sigma, fit.gauss_markov->tau_s};
+  return coefficients_table(fit.term, unit, process, fit.flicker_phase.has_value());
 }
 
 Table power_laws_table(const NoiseFit& fit) {

@@ -1,0 +1,225 @@
+#include "libchar/fit/detail/curve/curve_scatter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/text/readable.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr std::size_t kLooked = 24;  ///< points that a record length is judged by
+constexpr double kDigits = 1e-6;     ///< relative scatter of what is written with all its digits
+
+/// The smallest multiple of the first point's that makes every averaging time a whole number of samples, to 2 %.
+double likely_rate(const DigitisedCurve& curve) {
+  double rate_hz = 1 / curve.x.front();
+  const auto whole = [&] {
+    return std::all_of(curve.x.begin(), curve.x.end(), [&](double tau_s) {
+      const double m = tau_s * rate_hz;
+      return std::abs(std::round(m) / m - 1) < 0.02;
+    });
+  };
+  for (int i = 0; i < 6 && !whole(); ++i) rate_hz *= 2;
+  return rate_hz;
+}
+
+/// What a record of some length makes of ln(variance): bias, and inverse Cholesky factor of the
+/// covariance. A variance with few degrees of freedom, as at the slow end, is that of a chi-square,
+/// whose logarithm is skew.
+class RecordScatter {
+ public:
+  RecordScatter(const DigitisedCurve& curve, double duration_s)
+      : record_(record_of(curve, duration_s)), covariance_(record_) {}
+
+  void weigh(const Mixture& theta, double reading, CurveProblem& problem) const {
+    Mixture noise = theta;
+    noise[static_cast<std::size_t>(Term::ramp)] = 0;  // not random
+    Eigen::MatrixXd covariance = covariance_.at(noise);
+    const auto n = covariance.rows();
+    Eigen::VectorXd level(n), wider(n);
+    for (Eigen::Index j = 0; j < n; ++j)
+      level[j] = allan_variance(
+          noise, static_cast<double>(record_.points[static_cast<std::size_t>(j)].m), record_.dt_s);
+    covariance = level.cwiseInverse().asDiagonal() * covariance * level.cwiseInverse().asDiagonal();
+    problem.bias.resize(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const LogMoments moments = chi_square_log_moments(2 / covariance(j, j));
+      problem.bias[j] = moments.mean;
+      wider[j] = std::sqrt(moments.variance / covariance(j, j));
+    }
+    covariance = wider.asDiagonal() * covariance * wider.asDiagonal();
+    // Neighbours a fraction of an octave apart would be singular without reading errors.
+    covariance.diagonal().array() += reading * reading + 0.01 * covariance.diagonal().array();
+    problem.whitening = inverse_cholesky_factor(covariance);
+  }
+
+ private:
+  static AllanCurve record_of(const DigitisedCurve& curve, double duration_s) {
+    const double rate_hz = curve.rate_hz.value_or(likely_rate(curve));
+    AllanCurve record;
+    record.dt_s = 1 / rate_hz;
+    record.samples = static_cast<std::uint64_t>(std::llround(duration_s * rate_hz));
+    for (const double tau_s : curve.x) {
+      AllanPoint point;
+      point.m =
+          std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(tau_s * rate_hz)));
+      point.m = std::min(point.m, record.samples / 2);
+      point.tau_s = static_cast<double>(point.m) / rate_hz;
+      point.terms = record.samples - 2 * point.m + 1;
+      record.points.push_back(point);
+    }
+    return record;
+  }
+  AllanCurve record_;
+  AllanCovariance covariance_;
+};
+
+CurveSolution solve_weighed(const RecordScatter& scatter,
+                            double reading,
+                            const TermSet& offered,
+                            int rounds,
+                            CurveSolution best,
+                            CurveProblem& problem) {
+  for (int round = 0; round < rounds; ++round) {
+    scatter.weigh(best.theta, reading, problem);
+    best = solve_curve_thoroughly(problem, offered);
+  }
+  return best;
+}
+
+/// Some of the points, evenly over the curve.
+CurveProblem some_of(const CurveProblem& problem,
+                     const DigitisedCurve& curve,
+                     DigitisedCurve& few) {
+  const std::size_t n = curve.x.size(), kept = std::min(n, kLooked);
+  CurveProblem out;
+  out.value.resize(static_cast<Eigen::Index>(kept));
+  out.unit.resize(static_cast<Eigen::Index>(kept), problem.unit.cols());
+  few.rate_hz = curve.rate_hz;
+  for (std::size_t k = 0; k < kept; ++k) {
+    const std::size_t at = kept < 2 ? k : k * (n - 1) / (kept - 1);
+    few.x.push_back(curve.x[at]);
+    out.value[static_cast<Eigen::Index>(k)] = problem.value[static_cast<Eigen::Index>(at)];
+    out.unit.row(static_cast<Eigen::Index>(k)) = problem.unit.row(static_cast<Eigen::Index>(at));
+  }
+  return out;
+}
+
+Eigen::ArrayXd weights_of_groups(const DigitisedCurve& curve) {
+  return Eigen::Map<const Eigen::ArrayXd>(curve.group.data(),
+                                          static_cast<Eigen::Index>(curve.group.size()))
+      .sqrt();
+}
+
+/// Degrees of freedom of a chi-square whose logarithm has this variance.
+double dof_of_log_variance(double variance) {
+  double low = 1, high = 1e12;
+  while (high / low > 1.0001) {
+    const double middle = std::sqrt(low * high);
+    (chi_square_log_moments(middle).variance > variance ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+CurveSolution weigh_by_duration(const DigitisedCurve& curve,
+                                double duration_s,
+                                double reading,
+                                const TermSet& offered,
+                                CurveProblem& problem) {
+  return solve_weighed(RecordScatter(curve, duration_s),
+                       reading,
+                       offered,
+                       3,
+                       solve_curve_thoroughly(problem, offered),
+                       problem);
+}
+
+std::string weigh_by_likely_record(const DigitisedCurve& curve,
+                                   const TermSet& offered,
+                                   CurveProblem& problem) {
+  DigitisedCurve few;
+  const CurveProblem looked = some_of(problem, curve, few);
+  const CurveSolution start = solve_curve_thoroughly(looked, offered);
+  const auto n = static_cast<double>(looked.size());
+  double likely = std::sqrt(std::max(start.sum_of_squares / n, kDigits * kDigits));
+  double most = -n * (2 * std::log(likely) + 1), duration_s = 0;  // errors of reading alone
+  for (const double longer : {2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 100.0, 1000.0}) {
+    const RecordScatter scatter(few, longer * curve.x.back());
+    CurveProblem weighed = looked;
+    const Mixture about = solve_weighed(scatter, 3 * kReading, offered, 1, start, weighed).theta;
+    for (const double reading : {kReading / 2, 3 * kReading, 15 * kReading}) {
+      scatter.weigh(about, reading, weighed);
+      const double sum = solve_curve(weighed, only_positive(about)).sum_of_squares;
+      const double log_likelihood = 2 * weighed.whitening.diagonal().array().log().sum() - sum;
+      if (!(log_likelihood > most)) continue;
+      most = log_likelihood;
+      duration_s = longer * curve.x.back();
+      likely = reading;
+    }
+  }
+  if (duration_s > 0)
+    weigh_by_duration(curve, duration_s, likely, offered, problem);
+  else if (!curve.group.empty())
+    problem.weight = weights_of_groups(curve);
+  return fmt::format(
+      "which is that of {}{} in reading a deviation, whatever its averaging time; `duration_s` "
+      "states "
+      "the length of the record where it is known",
+      duration_s > 0 ? fmt::format("a record of about {} and of ", duration_text(duration_s, 2))
+                     : "",
+      percent_text(likely / 2));
+}
+
+std::string weigh_by_frequency(const DigitisedCurve& curve,
+                               const TermSet& offered,
+                               CurveProblem& problem) {
+  const auto n = problem.size();
+  const Eigen::ArrayXd together =
+      curve.group.empty() ? Eigen::ArrayXd::Ones(n) : weights_of_groups(curve);
+  Eigen::ArrayXd below(n);  // the highest frequency, ln
+  for (Eigen::Index j = 0; j < n; ++j)
+    below[j] = std::log(curve.x[static_cast<std::size_t>(j)] / curve.x.back());
+  const double free = static_cast<double>(n) - std::min(3.0, static_cast<double>(n) / 2);
+  const CurveProblem plain = problem;
+  double most = -std::numeric_limits<double>::infinity(), highest_dof = 0, power = 0;
+  for (const double slope : {0.0, 0.5, 1.0, 1.5}) {
+    CurveProblem weighed = plain;
+    weighed.weight = together * (0.5 * slope * below).exp();
+    double square = 0;
+    for (int round = 0; round < 3; ++round) {
+      square = solve_curve_thoroughly(weighed, offered).sum_of_squares / free;
+      weighed.bias.resize(n);
+      for (Eigen::Index j = 0; j < n; ++j)
+        weighed.bias[j] =
+            chi_square_log_moments(dof_of_log_variance(square / std::pow(weighed.weight[j], 2)))
+                .mean;
+    }
+    const double log_likelihood =
+        2 * weighed.weight.log().sum() - static_cast<double>(n) * std::log(square);
+    if (!(log_likelihood > most)) continue;
+    most = log_likelihood;
+    problem = weighed;
+    highest_dof = dof_of_log_variance(square);
+    power = slope;
+  }
+  return fmt::format(
+      "which is that of about {} degrees of freedom a point{}; a column edf states them where "
+      "they are "
+      "known",
+      brief_text(highest_dof, 2),
+      power > 0 ? fmt::format(" at the highest frequency, with its power of {} below",
+                              brief_text(power, 2))
+                : "");
+}
+
+}  // namespace libchar
