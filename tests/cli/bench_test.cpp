@@ -130,8 +130,15 @@ TEST_CASE("bench: an option of a part that is not done is refused, with that par
 
 TEST_CASE("bench: --samples bounds the records that check a design") {
   const auto run = [](const char* samples) {
-    return test::run({"bench", test::fixture("models/imu.sensor.yaml"), "--quick", "--parts", "design", "--records",
-                      "2", "--samples", samples})
+    return test::run({"bench",
+                      test::fixture("models/imu.sensor.yaml"),
+                      "--quick",
+                      "--parts",
+                      "design",
+                      "--records",
+                      "2",
+                      "--samples",
+                      samples})
         .out;
   };
   CHECK_THAT(run("64"), Contains("not simulated"));

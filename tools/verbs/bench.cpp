@@ -323,11 +323,12 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
                     "simulated records of each signal (default: 60; quick: 12)",
                     2,
                     100000);
-  options.add_count("--samples",
-                    verb->samples,
-                    "of a record, at most (default: 200000, a design's 4000000; quick: 32768, 400000)",
-                    64,
-                    std::uint64_t{1} << 32U);
+  options.add_count(
+      "--samples",
+      verb->samples,
+      "of a record, at most (default: 200000, a design's 4000000; quick: 32768, 400000)",
+      64,
+      std::uint64_t{1} << 32U);
   options.add_count("--runs", verb->runs, "of each scene (default: 12; quick: 3)", 2, 10000);
   options.add_texts("--methods", verb->methods, "ways to get coefficients (default: all)")
       .separated_by_commas()
