@@ -275,9 +275,10 @@ void FaultBaseline::renew(double count_memory, std::vector<double>& scratch) {
     bias_floor[i] = s[i] / memory;
     gain_floor[i] = least(square_x[i], kPriorGain);
     delay_floor[i] = least(square_dx[i], kPriorDelay);
-    // Where the input stands still there is nothing that a gain could show: x is noise or an outlier, in which the
-    // residual has a part. (Of a sensor that is taken for the best by far s says little: the middle of all does.)
-    unit_x[i] = square_x[i] < 4 * std::max(s[i], usual) ? 0 : 1 / std::sqrt(square_x[i]);
+    // Where the input rests there is nothing that a gain could show: x is noise, in which the residual has a part.
+    // (Of a sensor that is taken for the best by far s says little: the middle of all does.) Outliers are in both.
+    const double rest = std::max(usual, clip[i] < kMostDeviations ? 16 * s[i] : 0);
+    unit_x[i] = square_x[i] < rest ? 0 : 1 / std::sqrt(std::max(square_x[i], 16 * s[i]));
     start_margin[i] = 1 + 2 * std::sqrt(2 / std::clamp(count[i], 8.0, count_memory));
   }
 }
