@@ -69,7 +69,7 @@ class Fusing {
     find_channels();
     describe_scene();
     instants_ = std::make_unique<Instants>(scene_, progress_);
-    drop_frozen();
+    tell_frozen();
     prepare_instants();
     make_runner();
   }
@@ -84,7 +84,7 @@ class Fusing {
   double to_recorded(const LearntSensor& sensor, const Channel& channel) const;
   void without(const std::string& sensor);
   void describe_scene();
-  void drop_frozen();
+  void tell_frozen();
   void prepare_instants();
   void make_runner();
   void look_ahead();
@@ -293,23 +293,13 @@ void Fusing::check_rate() {
                                    brief_text(learnt_.rate_hz, 6)));
 }
 
-// What a sensor repeats while it hangs is no measurement: it counts as missing.
-void Fusing::drop_frozen() {
+void Fusing::tell_frozen() {
   const SourceInfo& source = instants_->source().info();
   result_.warnings.merge(source.samples_say);
-  for (std::size_t i = 0; i < source.presence.size(); ++i) {
-    const Presence& at = source.presence[i];
-    if (!is_frozen(source.presence, i, 0, static_cast<double>(source.samples))) continue;
-    scene_.faults.push_back({i,
-                             FaultKind::dropout,
-                             0,
-                             static_cast<double>(at.still_from) / source.rate_hz,
-                             static_cast<double>(at.still_from + at.still) / source.rate_hz});
+  for (const std::size_t i : source.frozen)
     result_.warnings.add("frozen_sensor",
-                         "sensors that stand still where the others move: missing there",
-                         still_words(scene_.sensors[i].name, at, source.rate_hz));
-  }
-  if (!scene_.faults.empty()) instants_ = std::make_unique<Instants>(scene_, progress_);
+                         kFrozenMissing,
+                         still_words(scene_.sensors[i].name, source.presence[i], source.rate_hz));
 }
 
 void Fusing::prepare_instants() {

@@ -22,6 +22,8 @@ constexpr Word kTrends[] = {{"none"}, {"mean"}, {"line"}};
 const Fields<LearntInput> kLearntInputFields = {
     field<&LearntInput::name>("name", {.meaning = "of the estimate's column", .required = true}),
     field<&LearntInput::unit>("unit", {.meaning = "of the estimate", .otherwise = "not known"}),
+    field<&LearntInput::reference_offset>(
+        "reference_offset", {.meaning = "subtracted from the reference", .otherwise = "0"}),
 };
 
 const Fields<LearntFrom> kLearntFromFields = {
@@ -251,11 +253,13 @@ const Fields<LearntFusion> kFusionInstants = {
 };
 
 const Fields<LearntFusion> kFusionContent = {
-    list_of<&LearntFusion::inputs>("inputs",
-                                   kLearntInputFields,
-                                   {.meaning = "what is estimated: `name`, `unit`",
-                                    .required = true,
-                                    .form = Entry::Form::flow}),
+    list_of<&LearntFusion::inputs>(
+        "inputs",
+        kLearntInputFields,
+        {.meaning =
+             "what is estimated: `name`, `unit`, `reference_offset`: subtracted from the reference",
+         .required = true,
+         .form = Entry::Form::flow}),
     field<&LearntFusion::interpolation>("interpolation",
                                         {.words = kInterpolations,
                                          .meaning = "of the alignment",

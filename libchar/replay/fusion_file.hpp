@@ -55,6 +55,8 @@ struct LearntSensor {
 
 struct LearntInput {
   std::string name, unit;
+  std::optional<double>
+      reference_offset;  ///< subtracted from the reference: it is not in the estimates
 };
 
 struct LearntAlgorithm {

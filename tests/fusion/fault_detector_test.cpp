@@ -330,6 +330,68 @@ TEST_CASE("minque: noise of heavy tails is no fault, and a fault in it is found"
     }
 }
 
+TEST_CASE("minque: rare outliers of all sensors are no faults and make nobody stand down") {
+  for (const Eigen::Index n : {3, 4, 6})
+    for (const Eigen::Index fault_free : {0, 6000}) {
+      INFO(n << " sensors, fault-free " << fault_free);
+      test::Gaussian gauss(static_cast<std::uint64_t>(40 + n));
+      Eigen::MatrixXd y(n, 200000);
+      for (Eigen::Index k = 0; k < y.cols(); ++k)
+        for (Eigen::Index i = 0; i < n; ++i)
+          y(i, k) = 5 * std::sin(.009 * static_cast<double>(k)) + gauss() +
+                    (gauss.uniform() < 1e-4 ? 30 * gauss() : 0);
+      Array array = test::array(n);
+      array.rate_hz = 100;
+      array.fault_free_samples = fault_free;
+      auto minque = test::make("minque", array);
+      test::run(*minque, y);
+      CHECK(minque->faults()->events().size() <= 4);  // the first one is seen
+      CHECK(minque->faults()->doubts().empty());
+    }
+}
+
+TEST_CASE(
+    "minque: offsets that wander and other axes in stop-and-go are no faults, a dead sensor is") {
+  struct Case {
+    const char* name;
+    double sigma, tau;  ///< of a Gauss-Markov offset, tau in samples
+    double cross;       ///< share of another motion
+  };
+  for (const Case& c : {Case{"slow", 1, 10000, 0}, {"fast", 1, 1000, 0}, {"cross", 0, 1, .03}})
+    for (const Eigen::Index n : {3, 4, 6}) {
+      INFO(c.name << ", " << n << " sensors");
+      test::Gaussian gauss(static_cast<std::uint64_t>(90 + n));
+      Eigen::MatrixXd y(n, 200000);
+      std::vector<double> offset(static_cast<std::size_t>(n), 0), share = offset;
+      for (double& one : share) one = c.cross * gauss();
+      double x[2] = {0, 0}, v[2] = {0, 0};
+      const double keep = std::exp(-1 / c.tau), w = 2e-3 * std::numbers::pi;
+      for (Eigen::Index k = 0; k < y.cols(); ++k) {
+        const bool still = k / 10000 % 2 == 1;
+        for (int a = 0; a < 2; ++a) {
+          v[a] += w * (-1.4 * v[a] - x[a] + (still ? 0 : 60 * std::sqrt(2.8 / w) * gauss()));
+          x[a] += w * v[a];
+        }
+        const double input = c.cross > 0 ? x[0] : 5 * std::sin(.009 * static_cast<double>(k));
+        for (Eigen::Index i = 0; i < n; ++i) {
+          double& own = offset[static_cast<std::size_t>(i)];
+          own = keep * own + c.sigma * std::sqrt(1 - keep * keep) * gauss();
+          y(i, k) = input + own + share[static_cast<std::size_t>(i)] * x[1] + gauss();
+        }
+      }
+      y.row(1).tail(5000).setConstant(y(1, y.cols() - 5001));
+      Array array = test::array(n);
+      array.rate_hz = 100;
+      array.fault_free_samples = 100000;
+      auto minque = test::make("minque", array);
+      test::run(*minque, y);
+      const auto events = minque->faults()->events();
+      REQUIRE_FALSE(events.empty());
+      CHECK(events[0].channel == 1);
+      CHECK(events[0].sample >= y.cols() - 5000);
+    }
+}
+
 TEST_CASE("minque: three against three is said, and nobody is thrown out") {
   Gyroscopes g = gyroscopes(12000, 51);
   g.y.topRows(3).rightCols(4000) *= .9;

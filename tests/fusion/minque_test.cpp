@@ -170,5 +170,6 @@ TEST_CASE("minque: near the optimum, two inputs, faults there too") {
   REQUIRE(watching->faults()->events().size() == 1);
   CHECK(watching->faults()->events()[0].channel == 3);
   CHECK(watching->faults()->events()[0].sample >= 6000);
-  CHECK(watching->faults()->events()[0].sample < 6020);
+  // Nothing says that the record begins sound: so early the evidence counts for half.
+  CHECK(watching->faults()->events()[0].sample < 6030);
 }

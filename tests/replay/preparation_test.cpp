@@ -241,6 +241,9 @@ TEST_CASE("replay: the reference's offset is found, subtracted, and said") {
   const ReplayResult found =
       run("reference: {channels: ref, offset: estimate}\nlearning: [0, 20]\n");
   REQUIRE(found.reference_offset);
+  // A fused log is told of it.
+  REQUIRE(found.learnt.inputs.at(0).reference_offset);
+  CHECK(*found.learnt.inputs[0].reference_offset == Approx(found.reference_offset->value));
   CHECK(found.reference_offset->value == Approx(0.5).margin(0.01));
   CHECK(found.reference_offset->ci95.low < 0.5);
   CHECK(found.reference_offset->ci95.high > 0.5);

@@ -431,6 +431,19 @@ TEST_CASE("replay: a sensor that freezes is left out of everything, with its pla
   CHECK(put_in.warnings.find("frozen_sensor") == nullptr);
 }
 
+TEST_CASE("replay: a sensor that freezes near the end has its weight until then") {
+  const test::SceneBench bench;
+  bench.put("five.csv", five_sensors(4000, [](int i, int k) {
+              return i == 2 && k >= 3600 ? std::string("0.125") : std::string("keep");
+            }));
+  const ReplayResult frozen = replay(bench.read(kFive));
+  REQUIRE(frozen.warnings.find("frozen_sensor") != nullptr);
+  CHECK_THAT(frozen.warnings.find("frozen_sensor")->where.rows.at(0),
+             Catch::StartsWith("c from 3"));
+  CHECK(named(frozen, "mean").weights.at(0)[2] == Approx(0.2));
+  CHECK(frozen.sensors[2].missing == Approx(0.1));
+}
+
 TEST_CASE("replay: a sensor that repeats another one is named") {
   const test::SceneBench bench;
   bench.put("five.csv", five_sensors(3000, [](int, int) { return std::string("keep"); }));

@@ -124,3 +124,17 @@ TEST_CASE("teaching: nothing is decided where something is said, or where there 
   CHECK_FALSE(replay(silent).alignment);
   CHECK(replay(silent).evaluation.from_s == 0);
 }
+
+TEST_CASE(
+    "taught replay: a method that learnt from the reference is none of those that need none") {
+  const ReplayResult result = run_taught({}, "algorithms: [least-squares, neural-simplex, mean]\n");
+  REQUIRE(result.best);
+  for (const std::string& sentence : verdict_sentences(result, false))
+    CHECK_THAT(sentence, !Contains("need none neural-simplex"));
+  ReplayResult other = result;
+  for (std::size_t k = 0; k < other.algorithms.size(); ++k)
+    if (other.algorithms[k].label == "neural-simplex") other.best = k;
+  CHECK_THAT(
+      fmt::format("{}", fmt::join(verdict_sentences(other, false), " ")),
+      Contains("neural-simplex learns from a reference; of the methods that need none mean"));
+}

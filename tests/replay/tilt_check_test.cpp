@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tests/support/noise.hpp"
 
@@ -53,6 +54,23 @@ TEST_CASE("tilt check: signs, exchanged axes, units and another axis are told") 
   CHECK_THAT(said(0.8, [](Instant& i) { i.rate *= 57.29578; }), Contains("57.3 times"));
   CHECK_THAT(said(0.8, [](Instant& i) { i.rate = 0.01 * std::sin(1000 * i.z); }),
              Contains("another axis"));
+}
+
+TEST_CASE(
+    "tilt check: a delay of the gyroscope or of the accelerometers is told, a lever arm is none") {
+  const auto late_by = [](bool gyroscope) {
+    return [gyroscope, line = std::vector<Instant>()](Instant& now) mutable {
+      line.push_back(now);
+      const Instant& late = line[line.size() > 20 ? line.size() - 21 : 0];
+      if (gyroscope)
+        now.rate = late.rate;
+      else
+        now = {now.rate, late.x, late.z};
+    };
+  };
+  CHECK_THAT(said(0.8, late_by(true)), Contains("gyroscope is") && Contains("late"));
+  CHECK_THAT(said(0.8, late_by(false)), Contains("accelerometers are 20") && Contains(" ms late"));
+  CHECK(said(0.3, [](Instant& i) { i.x *= 1.1; }).empty());
 }
 
 TEST_CASE(

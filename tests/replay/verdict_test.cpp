@@ -19,7 +19,8 @@ namespace {
 
 struct Sensor {
   double noise = 1, offset = 0, gain = 1;
-  double jump = 0;  ///< of the offset, from six tenths of the log on
+  double jump = 0;      ///< of the offset, from six tenths of the log on
+  double outliers = 0;  ///< share of samples that are 30 times the noise off
 };
 
 // A recording of sensors that see one slow signal, beside the signal itself.
@@ -34,7 +35,11 @@ std::string array_log(const std::vector<Sensor>& sensors, std::size_t rows, std:
     char cell[32];
     for (const Sensor& sensor : sensors) {
       const double offset = sensor.offset + (10 * k < 6 * rows ? 0 : sensor.jump);
-      std::snprintf(cell, sizeof cell, ",%.9g", sensor.gain * x + offset + sensor.noise * gauss());
+      std::snprintf(cell,
+                    sizeof cell,
+                    ",%.9g",
+                    sensor.gain * x + offset +
+                        sensor.noise * gauss() * (gauss.uniform() < sensor.outliers ? 30 : 1));
       out += cell;
     }
     std::snprintf(cell, sizeof cell, ",%.9g\n", x);
@@ -138,6 +143,26 @@ TEST_CASE(
     said += result.warnings.find("sensor_apart") != nullptr ? 1 : 0;
   }
   CHECK(said == 0);
+}
+
+TEST_CASE(
+    "verdict: outliers of all sensors name none of them, and do not hide the one that fails") {
+  for (const double share : {1e-4, 1e-3, 1e-2})
+    for (const std::size_t n : {3U, 4U, 6U})
+      for (const double jump : {0., 25.}) {
+        INFO(share << " of " << n << " sensors, jump " << jump);
+        std::vector<Sensor> sensors(n, Sensor{1, 0, 1, 0, share});
+        sensors[1].jump = jump;
+        const test::SceneBench bench;
+        bench.put("array.csv", array_log(sensors, 20000, n));
+        const ReplayResult result =
+            replay(bench.read(scene_of(n, "algorithms: [mean, median, minque]\n")));
+        if (jump == 0) CHECK(result.warnings.find("fault_watch_stood_down") == nullptr);
+        const Finding* failing = result.warnings.find("sensor_failing");
+        REQUIRE((failing != nullptr) == (jump > 0));
+        if (jump > 0) CHECK_THAT(failing->where.rows.at(0), StartsWith("s2"));
+        if (jump > 0) CHECK(failing->count == 1);
+      }
 }
 
 TEST_CASE("verdict: one per cent is no difference") {

@@ -20,7 +20,7 @@ constexpr std::size_t kSimulatedRows = 4096, kKeptRows = 4096;
 constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
 
 // What makes the numbers of a sensor worthless: marks for missing values, a dead band, a wrapping phase.
-// Of sensors that are compared (is_frozen) one that hangs is left out anyway.
+// Of sensors that are compared (is_frozen) one that hangs is missing there anyway.
 void note_bad_samples(const ChannelQuality& quality,
                       const std::string& sensor,
                       bool compared,
@@ -80,10 +80,12 @@ std::size_t position(const std::vector<std::string>& names, const std::string& n
 // What the sensors of one pass go through on their way.
 class SensorPath {
  public:
-  SensorPath(const Scene& scene, double rate_hz, std::uint64_t seed) : scene_(scene) {
+  SensorPath(const Scene& scene, const std::vector<SensorFault>& faults, double rate_hz)
+      : scene_(scene) {
+    const std::uint64_t seed = scene.simulated ? scene.simulated->seed : 1;
     for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
       std::vector<SensorFault> own;
-      for (const SensorFault& fault : scene.faults)
+      for (const SensorFault& fault : faults)
         if (fault.sensor == i) own.push_back(fault);
       injectors_.emplace_back(std::move(own), rate_hz, seed, i);
     }
@@ -134,7 +136,7 @@ Error of_scene(const Error& error, const std::string& file) {
 
 SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene) {
   want_channels();
-  known_faults_ = scene.faults;
+  known_faults_ = injected_ = scene.faults;
   if (scene.simulate) {
     describe_simulation();
   } else {
@@ -145,6 +147,21 @@ SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene
       read_even(progress);
     else
       scan(progress);
+    if (scene.faults.empty() && !scene.tilt) hide_frozen();  // else it is to be found
+  }
+}
+
+// What a sensor repeats while it hangs is no measurement.
+void SceneSource::hide_frozen() {
+  for (std::size_t i = 0; i < info_.presence.size(); ++i) {
+    if (!is_frozen(info_.presence, i, info_.samples)) continue;
+    const Presence& at = info_.presence[i];
+    info_.frozen.push_back(i);
+    injected_.push_back({i,
+                         FaultKind::dropout,
+                         0,
+                         static_cast<double>(at.still_from) / info_.rate_hz,
+                         static_cast<double>(at.still_from + at.still) / info_.rate_hz});
   }
 }
 
@@ -235,7 +252,7 @@ void SceneSource::scan(Progress& progress) {
     if (seen)
       note_bad_samples(first.meters[column].finish(),
                        sensor ? scene_->sensors[k].name : wanted_[k] + ", the reference",
-                       sensor && scene_->sensors.size() >= 3,
+                       sensor && scene_->sensors.size() >= 3 && !scene_->tilt,
                        info_.samples_say);
     (k < scene_->sensors.size() ? info_.units : info_.reference_units)
         .push_back(log.channels[column].unit);
@@ -274,7 +291,7 @@ std::vector<std::vector<double>> SceneSource::reference_columns(Progress& progre
 }
 
 void SceneSource::stream_kept(std::uint64_t until, const SourceBlock& block) const {
-  SensorPath path(*scene_, info_.rate_hz, scene_->simulated ? scene_->simulated->seed : 1);
+  SensorPath path(*scene_, injected_, info_.rate_hz);
   std::vector<std::span<const double>> out(columns_.size());
   const std::uint64_t end = std::min(until, info_.samples);
   for (std::uint64_t done = 0; done < end;) {
@@ -299,7 +316,7 @@ void SceneSource::stream_recording(std::uint64_t until,
         reading.from_s.value_or(0) + static_cast<double>(until + 1) / info_.rate_hz;
     reading.to_s = std::min(reading.to_s.value_or(end_s), end_s);
   }
-  SensorPath path(*scene_, info_.rate_hz, scene_->simulated ? scene_->simulated->seed : 1);
+  SensorPath path(*scene_, injected_, info_.rate_hz);
   std::vector<std::span<const double>> out(columns_.size());
   Forward forward([&](const SampleBlock& samples) {
     if (samples.first >= until) return;

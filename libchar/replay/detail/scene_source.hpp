@@ -23,17 +23,20 @@ namespace libchar {
 struct Presence {
   std::uint64_t first = 0, last = 0, samples = 0;  ///< grid points; samples 0: nowhere
   std::uint64_t still_from = 0, still = 0;         ///< its longest run of one value
-  std::uint64_t run = 0;                           ///< of the last value
+  std::uint64_t next_still = 0;                    ///< the longest but that
+  std::uint64_t run_from = 0, run = 0;             ///< of the last value
   double value = 0;                                ///< the last one
 
   /// Consecutive samples, the first of them at a grid point.
   void push(std::uint64_t at, std::span<const double> values);
 };
 
-/// One that stands still for long between two grid points, as no other of three or more does: a noise
-/// never gives one value so often, and a quantity that rests between coarse steps does so for all.
-bool is_frozen(std::span<const Presence> presence, std::size_t i, double from, double to);
+/// One of three or more that stands still for long as neither another nor itself ever does: a noise never gives one
+/// value so often, and a quantity that rests between coarse steps does so for all.
+bool is_frozen(std::span<const Presence> presence, std::size_t i, std::uint64_t samples);
 
+inline constexpr const char* kFrozenMissing =
+    "sensors that stand still where the others move: missing there";
 /// "NAME from 120 to 240 s".
 std::string still_words(const std::string& name, const Presence& at, double rate_hz);
 
@@ -45,6 +48,7 @@ struct SourceInfo {
   std::size_t further_axes = 0;              ///< that each sensor names beside its own
   std::vector<LogInfo> logs;                 ///< the recording; empty for a simulation
   std::vector<Presence> presence;            ///< of the sensors; empty for a simulation
+  std::vector<std::size_t> frozen;           ///< sensors that are missing where they stand still
   Findings samples_say;                      ///< what makes the samples of sensors doubtful
   bool kept = false;                         ///< in memory, not read again for each pass
 };
@@ -82,6 +86,7 @@ class SceneSource {
   void describe_simulation();
   void scan(Progress& progress);
   void read_even(Progress& progress);
+  void hide_frozen();
   void stream_kept(std::uint64_t until, const SourceBlock& block) const;
   void stream_recording(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
   void stream_simulation(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
@@ -94,7 +99,7 @@ class SceneSource {
   std::vector<std::size_t> columns_;       // of the source, for each of `wanted_`
   std::vector<std::vector<double>> kept_;  // a short text or a resampled recording, by column
   SourceInfo info_;
-  std::vector<SensorFault> known_faults_;
+  std::vector<SensorFault> known_faults_, injected_;
 };
 
 }  // namespace libchar

@@ -91,10 +91,6 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("{} and {}", fmt::join(head, ", "), names.back());
 }
 
-bool learns(const AlgorithmResult& a) {
-  return a.description->needs.reference;
-}
-
 // The cheapest of those that cannot be told from the best; where the record tells little, not one
 // whose error is clearly larger in it.
 const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
@@ -144,7 +140,7 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
   std::vector<std::string> equals;
   for (const AlgorithmResult* a : ranked(r))
     if (!a->bound && a->as_good_as_best && a->label != best.label)
-      equals.push_back(a->label + (learns(*a) ? " (learns from a reference)" : ""));
+      equals.push_back(a->label + (detail::learns(r, *a) ? " (learns from a reference)" : ""));
   if (equals.empty()) {
     const auto others =
         std::count_if(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
@@ -178,9 +174,9 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
 std::string without_reference_sentence(const ReplayResult& r,
                                        const AlgorithmResult& best,
                                        bool costs) {
-  if (!learns(best)) return "";
+  if (!detail::learns(r, best)) return "";
   for (const AlgorithmResult* a : ranked(r))
-    if (!a->bound && !learns(*a) && std::isfinite(a->rmse))
+    if (!a->bound && !detail::learns(r, *a) && std::isfinite(a->rmse))
       return fmt::format(
           "{} learns from a reference; of the methods that need none {} is best: {}{}.",
           best.label,
@@ -323,6 +319,11 @@ std::string doubtful_sensors(const ReplayResult& r) {
 
 std::string optimum_of(const ReplayResult& r) {
   return r.scene.tilt ? "tilt filters" : "fixed weights";
+}
+
+bool detail::learns(const ReplayResult& r, const AlgorithmResult& a) {
+  return a.description->needs.reference ||
+         (a.description->needs.reference_helps && r.learning && r.has_reference);
 }
 
 std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {

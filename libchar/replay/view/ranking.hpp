@@ -38,4 +38,11 @@ std::vector<std::string> verdict_sentences(const ReplayResult& result, bool cost
 /// What the optimum of this scene is: "fixed weights", "tilt filters".
 std::string optimum_of(const ReplayResult& result);
 
+namespace detail {
+
+/// It learnt from the reference of this replay.
+bool learns(const ReplayResult& result, const AlgorithmResult& algorithm);
+
+}  // namespace detail
+
 }  // namespace libchar

@@ -46,7 +46,7 @@ AlgorithmView algorithm_view(const ReplayResult& r, const AlgorithmResult& a, st
   out.result = &a;
   out.best = r.best && &r.algorithms[*r.best] == &a;
   if (a.description != nullptr) {
-    out.learns = a.description->needs.reference;
+    out.learns = detail::learns(r, a);
     out.needs = needs_in_words(*a.description);
   }
   out.settings = settings_in_words(a.settings);

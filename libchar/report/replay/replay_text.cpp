@@ -176,6 +176,11 @@ std::string fuse_text(const FuseResult& result, const std::vector<std::string>& 
     out += sensor.out > 0 ? fmt::format(", taken out {}\n", percent(sensor.out, result.instants))
                           : "\n";
   }
+  for (const LearntInput& input : result.inputs)
+    if (input.reference_offset)
+      out += fmt::format("{}: as the sensors read it; the reference of the replay read {} more\n",
+                         printable(input.name),
+                         with_unit(*input.reference_offset, 4, input.unit));
   out += "wrote";
   for (const std::string& file : files) out += " " + printable(file);
   return out + "\n";
@@ -191,6 +196,7 @@ const Fields<FuseResult>& fuse_fields() {
   static const Fields<LearntInput> inputs = always(Fields<LearntInput>{
       field<&LearntInput::name>("name"),
       field<&LearntInput::unit>("unit"),
+      field<&LearntInput::reference_offset>("reference_offset", {.written = Written::when_set}),
   });
   static const Fields<U> sensors = always(Fields<U>{
       field<&U::name>("name"),

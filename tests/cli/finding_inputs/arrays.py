@@ -91,7 +91,7 @@ def set_to(name, values):
 
 def three_against_three(made):
     for name in "abc":
-        made[name][4000:] = [0.5 * v for v in made[name][4000:]]
+        made[name][14000:] = [0.2 * v for v in made[name][14000:]]
 
 
 def periodic(made):
@@ -232,7 +232,8 @@ INPUTS = {
     "faults_not_watched": asked(replay(algorithms="minque-published")),
     "negative_variance": asked(replay(algorithms="minque-published", options=("--set", "minque-published.gamma=0.9"))),
     "variances_not_identifiable": asked(replay(algorithms="minque", levels=(1, 1, 400, 1, 1, 1))),
-    "faults_ambiguous": asked(replay(three_against_three, algorithms="minque", sensors="a,b,c,d,e,f", reference="")),
+    "faults_ambiguous": asked(replay(three_against_three, algorithms="minque", sensors="a,b,c,d,e,f", reference="",
+                                     n=20000)),
     "fault_watch_stood_down": asked(scene(sensors_of("abcdef", "fault_free_s: 20\n"), "minque", change=coloured,
                                           n=20000)),
     "faults_not_kept": asked(restless),

@@ -14,7 +14,7 @@ namespace libchar::fusion {
 namespace {
 
 /// Beyond it a residual is not learnt from, and its square proves nothing more.
-constexpr double kClip = 6, kMostDeviations = 1e6;
+constexpr double kClip = 6;
 constexpr double kMostRecent = 1e6;
 /// P(|z| > FaultBaseline::kTail) of Gaussian noise; beyond four times as much the tails are heavy.
 constexpr double kGaussTail = 6.33e-5, kHeavy = 4;
@@ -31,6 +31,8 @@ constexpr double kBlockMemory = 64;
 // Four sensors at once: what stands of a kind in the group at q.
 #define LIBCHAR_GROUP(kind) LIBCHAR_FOUR(q + 4 * FaultBaseline::kind)
 #define LIBCHAR_GROUP_TO(kind) LIBCHAR_FOUR_TO(q + 4 * FaultBaseline::kind)
+/// v between -end and end. (A function would not be of the lanes.)
+#define LIBCHAR_CUT(v, end) ((v) < -(end) ? -(end) : (v) > (end) ? (end) : (v))
 
 /// f, here and y to x, dx, y less its slow mean, and the means of f.
 LIBCHAR_LANES void predict_all_lanes(double* q, double* y, std::size_t padded) {
@@ -76,8 +78,10 @@ LIBCHAR_LANES void standardise_all_lanes(double* q,
                                          const Evidence& out,
                                          std::size_t padded,
                                          double inverse_excess) {
-  const double a = 1 / FaultBaseline::kRecent, root = std::sqrt(inverse_excess);
-  const Four least = {-kMostDeviations, -kMostDeviations, -kMostDeviations, -kMostDeviations};
+  const double a = 1 / FaultBaseline::kRecent, b = 1 / FaultBaseline::kLevelMemory;
+  const double root = std::sqrt(inverse_excess);
+  constexpr double kMost = FaultBaseline::kMostDeviations;
+  const Four least = {-kMost, -kMost, -kMost, -kMost};
   const Four most = -least;
   const Four tail = {
       FaultBaseline::kTail, FaultBaseline::kTail, FaultBaseline::kTail, FaultBaseline::kTail};
@@ -95,16 +99,21 @@ LIBCHAR_LANES void standardise_all_lanes(double* q,
     const Four z = low > most ? most : low;
     LIBCHAR_GROUP_TO(kZ) = z;
     const Four end = LIBCHAR_GROUP(kClip);
-    const Four above = z < -end ? -end : z, c = above > end ? end : above;
+    const Four level = LIBCHAR_GROUP(kLevel), scale = LIBCHAR_GROUP(kScaleBias);
+    const Four risen = z - (1 - scale * scale) * level;
+    const Four moved = risen * (LIBCHAR_GROUP(kScaleGain) * root);
+    const Four shifted = z * (scale * root);
+    const Four c = LIBCHAR_CUT(z, end), shift = LIBCHAR_CUT(shifted, end);
     const Four now = here * LIBCHAR_GROUP(kArmed), u = x * LIBCHAR_GROUP(kUnitX) * now;
-    LIBCHAR_FOUR_TO(out.z + i) = now * c * LIBCHAR_GROUP(kScaleBias) * root;
+    LIBCHAR_FOUR_TO(out.z + i) = now * shift;
     LIBCHAR_FOUR_TO(out.present + i) = now;
-    LIBCHAR_FOUR_TO(out.uz + i) = u * c * LIBCHAR_GROUP(kScaleGain) * root;
+    LIBCHAR_FOUR_TO(out.uz + i) = u * LIBCHAR_CUT(moved, end);
+    LIBCHAR_GROUP_TO(kLevel) = level + here * b * (c - level);
     LIBCHAR_FOUR_TO(out.uu + i) = u * u;
     LIBCHAR_FOUR_TO(out.zz + i) =
         now * ((c * c * inverse_excess - 1) * LIBCHAR_GROUP(kScaleNoise) + 1);
     LIBCHAR_GROUP_TO(kSumZ) = LIBCHAR_GROUP(kSumZ) + z;
-    LIBCHAR_GROUP_TO(kSumXz) = LIBCHAR_GROUP(kSumXz) + x * z;
+    LIBCHAR_GROUP_TO(kSumXz) = LIBCHAR_GROUP(kSumXz) + x * risen;
     LIBCHAR_GROUP_TO(kSumXx) = LIBCHAR_GROUP(kSumXx) + x * x;
     LIBCHAR_GROUP_TO(kSumZz) = LIBCHAR_GROUP(kSumZz) + z * z;
     LIBCHAR_GROUP_TO(kSumN) = LIBCHAR_GROUP(kSumN) + here;
@@ -149,15 +158,16 @@ constexpr InLanes<learn_all_lanes> learn_all;
 
 #undef LIBCHAR_GROUP
 #undef LIBCHAR_GROUP_TO
+#undef LIBCHAR_CUT
 
 // A sum with the slope t is worth e^S of false alarms while E exp(t z - t^2/2) <= 1. A share p of samples beyond c adds
 // p exp(t c - t^2/2) to it, of the steepest row at most kTailPart. Short of tails that are heavier than Gauss's,
 // nothing
 // is cut: the steepest row answers a gross fault at once.
-double clip_of(double tails, double of) {
+double clip_of(double tails, double of, double most) {
   constexpr double kSteepest = 2.8, kTailPart = 0.2, kLeast = 2.5;
   if (of < kFewestForTail) return kUntoldClip;
-  if (tails <= kChance + kHeavy * kGaussTail * of) return kMostDeviations;
+  if (tails <= kChance + kHeavy * kGaussTail * of) return most;
   return std::max(kLeast,
                   (kSteepest * kSteepest / 2 + std::log(kTailPart * of / tails)) / kSteepest);
 }
@@ -165,8 +175,9 @@ double clip_of(double tails, double of) {
 double believed(double ratio, double blocks, bool trusted) {
   // What the scatter of so few blocks alone would show is not believed.
   const double scatter = 1 + 3.5 * std::sqrt(2 / std::max(blocks, 1.0));
-  if (trusted || blocks >= 16) return ratio <= scatter ? 1 : ratio;
-  return std::max(ratio, 1.0);
+  if ((trusted || blocks >= 16) && ratio <= scatter) return 1;
+  return std::max(ratio, 1.0) *
+         (trusted || blocks >= 16 ? 1 + std::sqrt(2 / std::max(blocks, 1.0)) : scatter);
 }
 
 }  // namespace
@@ -251,7 +262,11 @@ void FaultBaseline::find_excess(const int* index, int m, std::vector<double>& sc
   excess = median > kLeastExcess ? median : 1;
 }
 
-void FaultBaseline::renew(double count_memory) {
+void FaultBaseline::renew(double count_memory, std::vector<double>& scratch) {
+  scratch.clear();
+  for (std::size_t i = 0; i < n; ++i)
+    if (here[i] != 0) scratch.push_back(s[i]);
+  const double usual = scratch.empty() ? 0 : median_in_place(scratch, Middle::lower);
   for (std::size_t i = 0; i < n; ++i) {
     const double memory = std::clamp(count[i], 100.0, kMemory);
     const auto least = [&](double square, double prior) {
@@ -260,11 +275,10 @@ void FaultBaseline::renew(double count_memory) {
     bias_floor[i] = s[i] / memory;
     gain_floor[i] = least(square_x[i], kPriorGain);
     delay_floor[i] = least(square_dx[i], kPriorDelay);
-    // Where the input stands still there is nothing that a gain could show; outliers would be input and residual at
-    // once.
-    const bool still = square_x[i] < 16 * s[i];
-    unit_x[i] =
-        still && clip[i] < kMostDeviations ? 0 : 1 / std::sqrt(std::max(square_x[i], 16 * s[i]));
+    // Where the input rests there is nothing that a gain could show: x is noise, in which the residual has a part.
+    // (Of a sensor that is taken for the best by far s says little: the middle of all does.) Outliers are in both.
+    const double rest = std::max(usual, clip[i] < kMostDeviations ? 16 * s[i] : 0);
+    unit_x[i] = square_x[i] < rest ? 0 : 1 / std::sqrt(std::max(square_x[i], 16 * s[i]));
     start_margin[i] = 1 + 2 * std::sqrt(2 / std::clamp(count[i], 8.0, count_memory));
   }
 }
@@ -290,11 +304,16 @@ void FaultBaseline::end_block(bool trusted, const std::vector<double>& tops, dou
     const double kept = std::min(1.0, kBlockMemory * kBlock / (long_run.tails_of[i] + m));
     long_run.tails[i] = kept * (long_run.tails[i] + sum_tail[i]);
     long_run.tails_of[i] = kept * (long_run.tails_of[i] + m);
-    clip[i] = clip_of(long_run.tails[i], long_run.tails_of[i]);
+    clip[i] = clip_of(long_run.tails[i], long_run.tails_of[i], long_run.most_clip);
     // A mean that wanders is no noise either.
     scale_noise[i] = 1 / std::max(std::sqrt(believed(long_run.noise[i], b, trusted)), bias_ratio);
   }
   clear_block();
+}
+
+void FaultBaseline::expect_outliers() {
+  long_run.most_clip = kUntoldClip;
+  for (std::size_t i = 0; i < n; ++i) clip[i] = std::min(clip[i], long_run.most_clip);
 }
 
 void FaultBaseline::clear_block() {

@@ -14,9 +14,10 @@
 //
 //   l_bias = mean (sum z)^2 / n,   l_gain = mean (sum x z)^2 / sum x^2,   l_noise = mean (sum z^2 - n)^2 / 2n
 //
-// and the evidence of the bank is divided by it. Tails heavier than Gauss's are cut where the bank's sums would
-// not be worth their false alarms otherwise (`clip`). Where most sensors are off at once (a motion that was not
-// there before), the median over the sensors of their z^2 in the last instants says by how much residuals
+// and the evidence of the bank is divided by it; for a gain the share 1 - 1/l_bias of the last mean of z is taken out
+// of z first: half a period of x and a slow offset look like one. Tails heavier than Gauss's are cut where the bank's
+// sums would not be worth their false alarms otherwise (`clip`). Where most sensors are off at once (a motion that was
+// not there before), the median over the sensors of their z^2 in the last instants says by how much residuals
 // are larger than expected: all z^2 are divided by it (`excess`).
 
 #include <vector>
@@ -88,8 +89,10 @@ struct FaultBaseline {
     kSumTail,
     kClip,
     kRecentSquare,
+    kLevel,
     kKinds
   };
+  static constexpr double kMostDeviations = 1e6;
   static constexpr std::size_t kStride = 4 * kKinds;  ///< from a group of four sensors to the next
 
   std::size_t n, padded;
@@ -119,6 +122,7 @@ struct FaultBaseline {
     std::vector<double> bias, gain, noise;  ///< variance ratios
     std::vector<double> blocks;             ///< how many
     std::vector<double> tails, tails_of;    ///< samples with |z| > kTail, of so many
+    double most_clip = kMostDeviations;     ///< where tails are not heavy
     explicit LongRun(std::size_t padded)
         : bias(padded, 1.0),
           gain(padded, 1.0),
@@ -131,7 +135,7 @@ struct FaultBaseline {
 
   /// Memory in samples; x and dx have shorter ones.
   static constexpr double kMemory = 20000, kMeanMemory = 1000;
-  static constexpr double kRecent = 200;
+  static constexpr double kRecent = 200, kLevelMemory = 64;
   static constexpr int kBlock = 512;
   static constexpr int kLeastOfBlock = kBlock / 8;
   static constexpr double kTail = 4;
@@ -145,10 +149,13 @@ struct FaultBaseline {
   /// `excess` from the m sensors in use; scratch has room for them.
   void find_excess(const int* index, int m, std::vector<double>& scratch);
   /// What changes slowly: floors, units, by how much variances at the start are widened.
-  void renew(double count_memory);
+  void renew(double count_memory, std::vector<double>& scratch);
   /// The end of a block: long-run variances. `trusted`: the record begins without faults.
   void end_block(bool trusted, const std::vector<double>& tops, double frozen);
   void clear_block();
+  /// An alarm was over at once: from here on no single sample of any sensor is worth one.
+  void expect_outliers();
+  bool expects_outliers() const { return long_run.most_clip < kMostDeviations; }
   /// What was learnt of the long run while the means were still wrong is forgotten.
   /// `trusted`: they are one until shown otherwise. Otherwise they are taken for large until shown otherwise:
   /// only gross faults are judged at first.

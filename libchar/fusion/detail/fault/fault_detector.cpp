@@ -231,7 +231,7 @@ void FaultDetector::note_window() {
 /// Floors, units, arming: what hardly changes in 64 instants.
 template <class Variances>
 void FaultDetector::slow_work(Variances& variances) {
-  base_.renew(FaultBaseline::kMemory);
+  base_.renew(FaultBaseline::kMemory, median_);
   const bool wait = now_ + 1 < fault_free_ || now_ < armed_again_;
   any_armed_ = false;
   double samples = 0;
@@ -360,6 +360,7 @@ void FaultDetector::follow_noisy() {
     if (!(noisy_[i] > 0) || base_.here[i] == 0) continue;
     if (!recovery_[i].add(base_.z[i], 1, 0)) continue;
     if (recovery_[i].scatter() > 1 / std::sqrt(noisy_[i])) continue;
+    if (recovery_[i].first()) base_.expect_outliers();
     change_variance(i, 1 / noisy_[i]);
     noisy_[i] = 0;
     --count_noisy_;

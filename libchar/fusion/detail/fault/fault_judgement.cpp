@@ -201,6 +201,8 @@ void FaultDetector::act(const Isolation& found, int window) {
     } else if (healthy > least_healthy(rule)) {
       take_out(i, rule);
       --healthy;
+    } else if (window < kFewInstants && !base_.expects_outliers()) {
+      base_.expect_outliers();
     } else {
       misfit(-1);
     }
@@ -243,6 +245,7 @@ void FaultDetector::doubt(const Isolation& found) {
 void FaultDetector::misfit(int sensor) {
   // A sensor that fails again and again for a moment is its own matter.
   bank_.reset();
+  if (sensor >= 0 && !base_.expects_outliers()) return base_.expect_outliers();
   if (sensor >= 0 && sensor == misfit_sensor_) return;
   misfit_sensor_ = sensor;
   if (last_misfit_ >= 0 && now_ - last_misfit_ > kMisfitMemory) misfits_ = 0;

@@ -122,6 +122,8 @@ fusion::Array describe_array(const Scene& scene,
 
 /// A sensor with samples at fewer instants than this share of the run measures nothing.
 constexpr double kLeastPresent = 1e-3;
+/// One that stands still for more than this share of it is left out: many methods need all sensors at each instant.
+constexpr double kMostFrozen = 0.5;
 
 // A dead sensor must not leave every instant of the others incomplete.
 std::vector<Eigen::Index> live_sensors(const Scene& scene,
@@ -137,13 +139,17 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene,
   const double from = sample(plan.run_from), to = sample(plan.run_to);
   for (std::size_t i = 0; i < source.presence.size(); ++i) {
     const Presence& at = source.presence[i];
-    if (scene.faults.empty() &&
-        is_frozen(source.presence, i, from, to)) {  // else it is to be found
+    if (std::find(source.frozen.begin(), source.frozen.end(), i) != source.frozen.end()) {
+      const auto still = static_cast<double>(at.still_from);
+      const double inside =
+          std::min(to, still + static_cast<double>(at.still)) - std::max(from, still);
+      const bool whole = inside >= kMostFrozen * (to - from);
       plan.warnings.add(
           "frozen_sensor",
-          "sensors that stand still where the others move were left out of everything",
+          whole ? "sensors that stand still where the others move were left out of everything"
+                : kFrozenMissing,
           still_words(scene.sensors[i].name, at, source.rate_hz));
-      continue;
+      if (whole) continue;
     }
     const double overlap = std::min(to, static_cast<double>(at.last) + 1) -
                            std::max(from, static_cast<double>(at.first));

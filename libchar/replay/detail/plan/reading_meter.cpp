@@ -159,28 +159,62 @@ ReadingMeter::Readings ReadingMeter::steady() const {
   return readings(0.5, kOfHalf, kOfHalfRms);
 }
 
+bool ReadingMeter::beyond(const Fit& block, const LearntSensor::Reading& usual) {
+  return std::abs(block.mean) >
+             std::max(kBeyondUsual * usual.usual_mean, kBeyondNoise * usual.usual_rms) ||
+         block.rms > kLouder * usual.usual_rms;
+}
+
+// Outliers put single blocks of any sensor beyond: so many in a row are more than those of the middle sensor do by
+// chance, in all sensors together.
+std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt) const {
+  constexpr double kByChance = 1e-3;
+  std::vector<double> begun;
+  for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
+    if (!learnt[i]) continue;
+    double times = 0;
+    bool before = false;
+    for (const auto& block : blocks_) {
+      const Sums& s = block[i];
+      const bool now =
+          s.n >= kLeastInBlock && beyond(fit(s, learnt[i]->offset, learnt[i]->gain), *learnt[i]);
+      times += now && !before ? 1 : 0;
+      before = now;
+    }
+    begun.push_back(times);
+  }
+  const double blocks = static_cast<double>(blocks_.size());
+  const double chance = begun.empty() ? 0 : (median_in_place(begun) - 1) / blocks;
+  if (!(chance > 0)) return 2;
+  const double row = std::log(kByChance / (blocks * static_cast<double>(n_))) / std::log(chance);
+  return std::max<std::int64_t>(2, std::llround(std::ceil(row)));
+}
+
 std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt) const {
+  const std::int64_t least = least_in_a_row(learnt);
   std::vector<Change> out;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
     if (!learnt[i]) continue;
     const LearntSensor::Reading& usual = *learnt[i];
-    Change one{i, 0, 1, 0, 0, false};
+    Change one{i, 0, 1, 0, 0, false}, row = one;  // of those in a row
     std::int64_t in_a_row = 0, changed = 0, first = -1, last = 0;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const Sums& s = blocks_[k][i];
       if (s.n < kLeastInBlock) continue;
       const Fit here = fit(s, usual.offset, usual.gain);
-      const bool beyond = std::abs(here.mean) > std::max(kBeyondUsual * usual.usual_mean,
-                                                         kBeyondNoise * usual.usual_rms) ||
-                          here.rms > kLouder * usual.usual_rms;
-      in_a_row = beyond ? in_a_row + 1 : 0;
-      if (in_a_row < 2) continue;
-      const auto at = static_cast<std::int64_t>(k);
-      if (first < 0) first = at - 1;
-      last = at;
+      if (!beyond(here, usual)) {
+        in_a_row = 0;
+        continue;
+      }
+      if (in_a_row++ == 0) row = {i, 0, 1, static_cast<std::int64_t>(k), 0, false};
+      if (std::abs(here.mean) > std::abs(row.offset)) row.offset = here.mean;
+      if (usual.usual_rms > 0) row.scatter = std::max(row.scatter, here.rms / usual.usual_rms);
+      if (in_a_row < least) continue;
+      if (first < 0) first = row.from;
+      last = static_cast<std::int64_t>(k);
       ++changed;
-      if (std::abs(here.mean) > std::abs(one.offset)) one.offset = here.mean;
-      if (usual.usual_rms > 0) one.scatter = std::max(one.scatter, here.rms / usual.usual_rms);
+      if (std::abs(row.offset) > std::abs(one.offset)) one.offset = row.offset;
+      one.scatter = std::max(one.scatter, row.scatter);
     }
     if (changed == 0) continue;
     one.from = first * block_ * stride_;

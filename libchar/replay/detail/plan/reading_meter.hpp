@@ -33,7 +33,8 @@ class ReadingMeter {
   /// half of the log are not in it.
   Readings steady() const;
 
-  /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other.
+  /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other, and in more than
+  /// outliers of all sensors explain.
   struct Change {
     std::size_t sensor = 0;
     double offset = 0;              ///< largest mean beyond what was learnt
@@ -52,6 +53,8 @@ class ReadingMeter {
     double mean = 0, rms = 0;
   };
   static Fit fit(const Sums& sums, double a, double b);
+  static bool beyond(const Fit& block, const LearntSensor::Reading& usual);
+  std::int64_t least_in_a_row(const Readings& learnt) const;
   void close();
   Readings readings(double share, double mean_factor, double rms_factor) const;
 

@@ -45,6 +45,7 @@ void TiltCheck::push(const Eigen::MatrixXd& samples) {
 
 void TiltCheck::close() {
   const double g = now_.integral / now_.count, a = std::atan2(now_.x, now_.z);
+  const double rate = (integrated_ - now_.from) / (now_.count * step_s_);
   if (now_.whole && has_last_) {
     const double dg = g - last_g_, da = fusion::wrapped(a - last_a_);
     if (std::abs(da) < std::numbers::pi / 2) {
@@ -54,12 +55,28 @@ void TiltCheck::close() {
       gg_ += dg * dg;
       ga_ += dg * da;
       aa_ += da * da;
+      const double change = rate - last_rate_, e = dg - da;
+      rr_ += change * change;
+      re_ += change * e;
+      ee_ += e * e;
     }
   }
   has_last_ = now_.whole;
   last_g_ = g;
   last_a_ = a;
+  last_rate_ = rate;
   now_ = {};
+  now_.from = integrated_;
+}
+
+// 0: none that is resolved.
+double TiltCheck::delay_s() const {
+  constexpr double kResolved = 6, kSamples = 2;
+  if (!(rr_ > 0)) return 0;
+  const double delay = re_ / rr_, left = std::max(0.0, ee_ - delay * re_);
+  const bool resolved = std::abs(delay) > kResolved * std::sqrt(left / (n_ * rr_)) &&
+                        std::abs(delay) > kSamples * step_s_ && left < ee_ / 2;
+  return resolved ? delay : 0;
 }
 
 void TiltCheck::tell(Findings& warnings) const {
@@ -83,6 +100,11 @@ void TiltCheck::tell(Findings& warnings) const {
             "is wrong",
             brief_text(ratio, 3)),
         Severity::bad);
+  else if (const double delay = delay_s(); r > kSure && delay != 0)
+    say(fmt::format("the {} {} late: what is fused is of two times",
+                    delay > 0 ? "accelerometers are" : "gyroscope is",
+                    duration_text(std::abs(delay))),
+        Severity::caution);
   else if (std::abs(r) < kNone)
     say("the gyroscope does not turn as gravity does: it is another axis, or it does not work",
         Severity::caution);
