@@ -130,6 +130,12 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
       "(default: 1GiB)");
 }
 
+bool has_bias(const AnalysisOptions& analysis) {
+  return std::any_of(analysis.types.begin(), analysis.types.end(), [](const std::string& type) {
+    return type == "mtotdev" || type == "ttotdev" || type == "htotdev";
+  });
+}
+
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_choices("--type",
                    a.types,
@@ -158,7 +164,8 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_enum("--bias",
                 a.options.allan.bias,
                 "bias of mtotdev, ttotdev and htotdev: taken out as SP 1065 states it, or none, as "
-                "allantools leaves it (default: sp1065)");
+                "allantools leaves it (default: sp1065)")
+      .only("with --type mtotdev, ttotdev or htotdev", [&a] { return has_bias(a); });
   verb.add_flag(
       "--full-overlap",
       a.options.full_overlap,

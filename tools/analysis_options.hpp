@@ -22,6 +22,8 @@ struct AnalysisOptions {
 void add_still_option(VerbOptions& verb, AnalysisOptions& analysis);
 /// --data, --nominal-frequency, --memory
 void add_data_options(VerbOptions& verb, AnalysisOptions& analysis);
+/// A statistic whose bias `--bias` is about is among the types.
+bool has_bias(const AnalysisOptions& analysis);
 /// --type, --taus, --tau-min, --tau-max, --full-overlap
 void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// --sides, --scaling, --segment, --overlap, --window, --detrend. `segment_s` is the length of a

@@ -49,10 +49,11 @@ TEST_CASE("work: a log is read once, and only what was asked for is computed") {
   const std::string log = test::fixture("imu_at_rest.csv");  // two channels, 50 000 rows
   const std::uint64_t rows = 50000;
   CHECK(counts_of({"inspect", log, "--json"}) == Counts{{"passes", 1}, {"rows", rows}});
-  CHECK(counts_of({"psd", log, "--json"}) ==
-        Counts{{"passes", 1}, {"rows", rows}, {"segments", 14}});
+  CHECK(
+      counts_of({"psd", log, "--json"}) ==
+      Counts{{"passes", 1}, {"rows", rows}, {"segments", 14}, {"cosine_transforms", 4}});  // motion
   CHECK(counts_of({"psd", log, "--json", "--channel", "gyro_z"}) ==
-        Counts{{"passes", 1}, {"rows", rows}, {"segments", 7}});
+        Counts{{"passes", 1}, {"rows", rows}, {"segments", 7}, {"cosine_transforms", 2}});
   const test::TemporaryFolder folder;
   CHECK(counts_of({"convert", log, "-o", (folder / "x.npy").string(), "--json"}) ==
         Counts{{"passes", 1}, {"rows", rows}});

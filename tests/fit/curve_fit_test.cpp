@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "libchar/allan/allan_covariance.hpp"
-#include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
@@ -132,37 +131,11 @@ TEST_CASE("a curve of any scale that a double holds has the digits of scale one"
 }
 
 TEST_CASE(
-    "without the length of the record, intervals hold the coefficients by the points' own "
-    "scatter") {
-  constexpr int kRounds = 24;
-  const Mixture theta = {1e-2, 4e-4, 4e-6, 0, 0};
-  int covered[3] = {}, stated[3] = {};
-  for (unsigned seed = 0; seed < kRounds; ++seed) {
-    test::NoiseSource source(30'000, 1, 900 + seed);
-    const auto y = source.record(0.1, 0.02, 2e-3);
-    AllanOptions options;
-    options.grid = TauGrid::list;
-    for (double tau = 1; tau < 9'000; tau *= 1.4) options.taus_s.push_back(std::round(tau));
-    DigitisedCurve curve;
-    for (const AllanPoint& point : allan_deviation(y, 1, options).points) {
-      curve.x.push_back(point.tau_s);
-      curve.y.push_back(point.deviation);
-    }
-    const NoiseFit fit = fit_curve(curve);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Coefficient& term = fit.term[i];
-      const double truth = std::sqrt(theta[i]);
-      ++stated[i];
-      covered[i] += term.value ? term.ci95.low <= truth && truth <= term.ci95.high
-                               : term.upper95.value_or(0) >= truth;
-    }
-    REQUIRE(fit.findings.size() == 1);
-    CHECK(fit.findings[0].sentence.find("`duration_s`") != std::string::npos);
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    CAPTURE(i, covered[i], stated[i]);
-    CHECK(covered[i] >= 0.8 * stated[i]);
-  }
+    "without the length of the record, what the intervals rest on is said, and the option that "
+    "states it") {
+  const NoiseFit fit = fit_curve(allan_of({25e-6, 1e-6, 1e-8, 0, 0}, 100.0));
+  REQUIRE(fit.findings.size() == 1);
+  CHECK(fit.findings[0].sentence.find("`duration_s`") != std::string::npos);
 }
 
 TEST_CASE("with the length of the record, a curve in another unit has the same intervals") {
@@ -233,9 +206,7 @@ TEST_CASE("residuals that go together are fewer points, and widen the intervals"
     REQUIRE(fit[Term::white].value);
     return fit[Term::white].relative_sd;
   };
-  // Neighbours of a correlation of a half: a third of the points.
-  CHECK(relative_sd(8) > 0.95 * 0.01 / std::sqrt(48.0 / 3));
-  CHECK(relative_sd(2) > 0.01 / std::sqrt(48.0));
+  CHECK(relative_sd(8) > 1.4 * relative_sd(2));
 }
 
 TEST_CASE("a term that is there but barely known has an interval off zero on either side of it") {

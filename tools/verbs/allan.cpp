@@ -181,10 +181,15 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
   add_data_options(options, verb->analysis);
   verb->analysis.several_types = true;
   add_allan_options(options, verb->analysis);
-  options.only(
-      "without --hat, --hat-pairs and --dynamic",
-      [verb = verb.get()] { return !verb->hat && !verb->hat_of_differences && !verb->dynamic; },
-      {"--still", "--unwrap", "--frozen", "--interpolated", "--memory", "--bias"});
+  const auto plain = [verb = verb.get()] {
+    return !verb->hat && !verb->hat_of_differences && !verb->dynamic;
+  };
+  options.only("without --hat, --hat-pairs and --dynamic",
+               plain,
+               {"--still", "--unwrap", "--frozen", "--interpolated", "--memory"});
+  options.only("with --type mtotdev, ttotdev or htotdev, without --hat, --hat-pairs and --dynamic",
+               [plain, verb = verb.get()] { return plain() && has_bias(verb->analysis); },
+               {"--bias"});
   return [&session, verb] {
     verb->analysis.options.reading.hash = verb->json;  // only the document states it
     run_allan(session, *verb);

@@ -45,12 +45,17 @@ void add_notes(const std::vector<ChannelResult>& channels, std::vector<std::stri
     }
 }
 
-LogSpectra spectra_of(Characterization found) {
-  known_rate_hz(found.log);
+/// `wanted`: samples of a segment that was asked for; 0: none was.
+LogSpectra spectra_of(Characterization found, std::uint64_t wanted) {
   LogSpectra out;
   if (found.still) out.notes.push_back(found.still->sentence);
+  const bool longer = wanted > found.log.samples;
+  if (longer)
+    out.notes.push_back(fmt::format(
+        "a segment of {} samples is longer than the record of {}", wanted, found.log.samples));
   for (ChannelResult& c : found.channels) {
     if (!c.spectrum.value.empty()) {
+      if (longer) continue;
       out.channels.push_back(std::move(c));
       continue;
     }
@@ -60,7 +65,8 @@ LogSpectra spectra_of(Characterization found) {
   }
   if (out.channels.empty())
     throw numeric_error("E0715", found.log.file)
-        .says("no channel gives a spectrum" + (out.notes.empty() ? "" : ": " + out.notes.front()));
+        .says("no channel gives a spectrum" + (out.notes.empty() ? "" : ": " + out.notes.front()))
+        .hint(longer ? "try a shorter `segment`" : "");
   add_notes(out.channels, out.notes);
   out.log = std::move(found.log);
   return out;
@@ -71,10 +77,14 @@ template <typename Characterize>
 LogSpectra on_one_axis(const CharacterizeOptions& options, const Characterize& characterize) {
   CharacterizeOptions asked = spectra_alone(options);
   Characterization found = characterize(asked);
-  const std::size_t segment = shared_segment(found);
-  if (segment == 0) return spectra_of(std::move(found));
+  const double rate_hz = known_rate_hz(found.log);
+  const std::uint64_t wanted = asked.spectrum.segment != 0 || !(asked.segment_s > 0)
+                                   ? asked.spectrum.segment
+                                   : segment_samples(asked.segment_s, rate_hz);
+  const std::size_t segment = wanted > found.log.samples ? 0 : shared_segment(found);
+  if (segment == 0) return spectra_of(std::move(found), wanted);
   asked.spectrum.segment = segment;
-  LogSpectra out = spectra_of(characterize(asked));
+  LogSpectra out = spectra_of(characterize(asked), 0);
   out.notes.push_back(fmt::format(
       "all channels: segments of {} samples, the shortest that one of them needs", segment));
   return out;

@@ -4,9 +4,9 @@
 //   duration of the record  the exact covariance of its overlapping Allan variances (of the fitted
 //                           mixture, refined three times), with the mean and the variance that the
 //                           logarithm of a chi-square of as many degrees of freedom has;
-//   neither                 the scatter about the fit says it, likely length of a record or course over
-//                           frequency (detail/curve/curve_scatter.hpp); neighbouring residuals that go the
-//                           same way count as fewer points, n (1-r)/(1+r).
+//   neither                 the scatter about the fit says it: equal relative errors, of a spectrum a power of
+//                           the frequency (detail/curve/curve_scatter.hpp); neighbouring residuals that go
+//                           the same way count as fewer points, n (1-r)/(1+r).
 // Of a curve of more than 512 points neighbours are put together first, in at most that many groups that are even in the logarithm of
 // the abscissa: means of ln x and ln y by their weights, with the weight of all of them.
 // Where stated uncertainties (or a record's length) are contradicted by the scatter about the fit, the fast end of the curve is left
@@ -390,7 +390,7 @@ NoiseFit fit_points(const DigitisedCurve& curve,
     judge.scatter = Scatter::from_duration;
     rough = weigh_by_duration(curve, *curve.duration_s, kReading, offered, problem);
   } else {
-    basis = curve.is_allan ? weigh_by_likely_record(curve, offered, problem)
+    basis = curve.is_allan ? weigh_evenly(curve, offered, problem)
                            : weigh_by_frequency(curve, offered, problem);
     rough = solve_curve_thoroughly(problem, offered);
     judge.independent = effective_points(curve_residuals(problem, rough.theta), count_of(offered));

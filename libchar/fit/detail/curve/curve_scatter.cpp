@@ -15,9 +15,6 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kLooked = 24;  ///< points that a record length is judged by
-constexpr double kDigits = 1e-6;     ///< relative scatter of what is written with all its digits
-
 /// The smallest multiple of the first point's that makes every averaging time a whole number of samples, to 2 %.
 double likely_rate(const DigitisedCurve& curve) {
   double rate_hz = 1 / curve.x.front();
@@ -95,24 +92,6 @@ CurveSolution solve_weighed(const RecordScatter& scatter,
   return best;
 }
 
-/// Some of the points, evenly over the curve.
-CurveProblem some_of(const CurveProblem& problem,
-                     const DigitisedCurve& curve,
-                     DigitisedCurve& few) {
-  const std::size_t n = curve.x.size(), kept = std::min(n, kLooked);
-  CurveProblem out;
-  out.value.resize(static_cast<Eigen::Index>(kept));
-  out.unit.resize(static_cast<Eigen::Index>(kept), problem.unit.cols());
-  few.rate_hz = curve.rate_hz;
-  for (std::size_t k = 0; k < kept; ++k) {
-    const std::size_t at = kept < 2 ? k : k * (n - 1) / (kept - 1);
-    few.x.push_back(curve.x[at]);
-    out.value[static_cast<Eigen::Index>(k)] = problem.value[static_cast<Eigen::Index>(at)];
-    out.unit.row(static_cast<Eigen::Index>(k)) = problem.unit.row(static_cast<Eigen::Index>(at));
-  }
-  return out;
-}
-
 Eigen::ArrayXd weights_of_groups(const DigitisedCurve& curve) {
   return Eigen::Map<const Eigen::ArrayXd>(curve.group.data(),
                                           static_cast<Eigen::Index>(curve.group.size()))
@@ -144,40 +123,16 @@ CurveSolution weigh_by_duration(const DigitisedCurve& curve,
                        problem);
 }
 
-std::string weigh_by_likely_record(const DigitisedCurve& curve,
-                                   const TermSet& offered,
-                                   CurveProblem& problem) {
-  DigitisedCurve few;
-  const CurveProblem looked = some_of(problem, curve, few);
-  const CurveSolution start = solve_curve_thoroughly(looked, offered);
-  const auto n = static_cast<double>(looked.size());
-  double likely = std::sqrt(std::max(start.sum_of_squares / n, kDigits * kDigits));
-  double most = -n * (2 * std::log(likely) + 1), duration_s = 0;  // errors of reading alone
-  for (const double longer : {2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 100.0, 1000.0}) {
-    const RecordScatter scatter(few, longer * curve.x.back());
-    CurveProblem weighed = looked;
-    const Mixture about = solve_weighed(scatter, 3 * kReading, offered, 1, start, weighed).theta;
-    for (const double reading : {kReading / 2, 3 * kReading, 15 * kReading}) {
-      scatter.weigh(about, reading, weighed);
-      const double sum = solve_curve(weighed, only_positive(about)).sum_of_squares;
-      const double log_likelihood = 2 * weighed.whitening.diagonal().array().log().sum() - sum;
-      if (!(log_likelihood > most)) continue;
-      most = log_likelihood;
-      duration_s = longer * curve.x.back();
-      likely = reading;
-    }
-  }
-  if (duration_s > 0)
-    weigh_by_duration(curve, duration_s, likely, offered, problem);
-  else if (!curve.group.empty())
-    problem.weight = weights_of_groups(curve);
+std::string weigh_evenly(const DigitisedCurve& curve,
+                         const TermSet& offered,
+                         CurveProblem& problem) {
+  if (!curve.group.empty()) problem.weight = weights_of_groups(curve);
+  const double sum = solve_curve_thoroughly(problem, offered).sum_of_squares;
   return fmt::format(
-      "which is that of {}{} in reading a deviation, whatever its averaging time; `duration_s` "
-      "states "
-      "the length of the record where it is known",
-      duration_s > 0 ? fmt::format("a record of about {} and of ", duration_text(duration_s, 2))
-                     : "",
-      percent_text(likely / 2));
+      "taken as {} of the ordinate at every point: they say how well the drawn curve fixes the "
+      "coefficients, not how well the record behind it did; `duration_s` states the length of the "
+      "record where it is known",
+      percent_text(std::sqrt(sum / static_cast<double>(problem.size())) / 2));
 }
 
 std::string weigh_by_frequency(const DigitisedCurve& curve,

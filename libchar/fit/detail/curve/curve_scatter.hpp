@@ -19,11 +19,10 @@ CurveSolution weigh_by_duration(const DigitisedCurve& curve,
                                 const TermSet& offered,
                                 CurveProblem& problem);
 
-/// Likewise of the record length and the reading that the points are most likely to come from; a
-/// half-sentence about it.
-std::string weigh_by_likely_record(const DigitisedCurve& curve,
-                                   const TermSet& offered,
-                                   CurveProblem& problem);
+/// Equal relative errors, those of the scatter about the fit; a half-sentence about them.
+std::string weigh_evenly(const DigitisedCurve& curve,
+                         const TermSet& offered,
+                         CurveProblem& problem);
 
 /// A spectrum's: chi-square with degrees of freedom that go as a power of the frequency, the one
 /// that the points are most likely to come from.
