@@ -22,8 +22,8 @@ CharacterizeOptions spectra_alone(const CharacterizeOptions& options) {
 }
 
 /// The shortest segment of channels that share a rate and not a segment; 0: there is none.
-std::size_t shared_segment(const Characterization& found) {
-  std::size_t shortest = 0;
+std::uint64_t shared_segment(const Characterization& found) {
+  std::uint64_t shortest = 0;
   bool differ = false;
   for (const ChannelResult& c : found.channels) {
     if (c.spectrum.value.empty() || c.channel.rate_hz > 0) continue;
@@ -81,7 +81,7 @@ LogSpectra on_one_axis(const CharacterizeOptions& options, const Characterize& c
   const std::uint64_t wanted = asked.spectrum.segment != 0 || !(asked.segment_s > 0)
                                    ? asked.spectrum.segment
                                    : segment_samples(asked.segment_s, rate_hz);
-  const std::size_t segment = wanted > found.log.samples ? 0 : shared_segment(found);
+  const std::uint64_t segment = wanted > found.log.samples ? 0 : shared_segment(found);
   if (segment == 0) return spectra_of(std::move(found), wanted);
   asked.spectrum.segment = segment;
   LogSpectra out = spectra_of(characterize(asked), 0);

@@ -80,7 +80,7 @@ INPUTS = {
     "unknown_unit": Input(text("unit.csv", plain), ("--unit", "w=sverdrup")),
     "no_finite_value": Input(text("empty.csv", two_columns("v", lambda i: ""))),
     "slow_channel": Input(text("slow.csv", slow), analysis=("--temperature", "temp"),
-                          not_in={"allan": "it reads the channel alone, and says own_grid"}),
+                          not_in=dict.fromkeys(("allan", "psd"), "it reads the channel alone, and says own_grid")),
     "own_grid": Input(text("own_grid.csv", slow), made_by="characterize"),
     "own_rows": Input(text("own_rows.csv", slow), ("-c", "temp")),
     "time_unit_guessed": Input(text("unit.csv", lambda: "time,w[deg/s]\n" + "".join(
