@@ -143,8 +143,10 @@ std::vector<std::string> next_steps(const Session& session,
                       folder)};
   const std::vector<Finding> findings = findings_of(result);
   std::vector<std::string> out;
-  if (std::string mended = mended_command(session, findings, folder); !mended.empty())
-    out.push_back(std::move(mended));
+  // What is said of samples that were read in the wrong way mends nothing.
+  if (result.log.warnings.find("implausible_magnitude") == nullptr)
+    if (std::string mended = mended_command(session, findings, folder); !mended.empty())
+      out.push_back(std::move(mended));
   const auto usable =
       std::find_if(result.channels.begin(), result.channels.end(), [](const auto& c) {
         return c.fit && worst_of(judge(c).findings) != Severity::bad;
