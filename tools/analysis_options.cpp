@@ -119,9 +119,8 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
       "--interpolated",
       "N",
       [&a](const std::string& text) { a.options.interpolated = parse_count(text, 4); },
-      "treat what lies on straight lines of N or more samples as missing, as gaps that were "
-      "filled; "
-      "with fewer than 8 also what is straight to a thousandth (default: it counts)");
+      "treat samples on straight lines of N or more samples as missing, as in gaps that were "
+      "filled; lines of fewer than 8 must be straight to 0.1 % (default: they count)");
   verb.add_bytes(
       "--memory",
       a.options.memory_bytes,
@@ -132,7 +131,8 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
 
 bool has_bias(const AnalysisOptions& analysis) {
   return std::any_of(analysis.types.begin(), analysis.types.end(), [](const std::string& type) {
-    return type == "mtotdev" || type == "ttotdev" || type == "htotdev";
+    const auto known = deviation_type(type);
+    return known && deviation_row(*known).family == DeviationFamily::extended;
   });
 }
 

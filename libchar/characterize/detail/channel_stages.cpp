@@ -15,7 +15,7 @@ namespace {
 // What the leaves of a channel take: the one that is filled, what is made of it, and the nodes of
 // the tree.
 constexpr std::uint64_t kChannelBytes = std::uint64_t{24} << 20U;
-constexpr std::uint64_t kSpectrumBytes = std::uint64_t{17} << 20U;  // where nothing else is made
+constexpr std::uint64_t kSpectrumBytes = std::uint64_t{14} << 20U;  // where nothing else is made
 constexpr std::uint64_t kMostOfPass = std::uint64_t{192} << 20U;
 
 constexpr std::size_t kFittedAtOnce = 2;
